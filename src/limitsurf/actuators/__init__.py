@@ -1,0 +1,1 @@
+"""Actuators, arrays of them, and activations."""

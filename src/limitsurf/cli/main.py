@@ -1,0 +1,50 @@
+"""Entry point of the ``limitsurf`` command."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import typer
+
+from limitsurf.cli.align import align
+from limitsurf.errors import LimitSurfError
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    name="limitsurf",
+    help="Contact mechanics and sensorless alignment on actuator arrays.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+app.command()(align)
+
+
+@app.command()
+def models() -> None:
+    """List the models that come with limitsurf."""
+    from limitsurf.modelfiles import describe_models
+
+    for kind in ("parts", "arrays", "actuators"):
+        typer.echo(f"{kind}:")
+        for name, description in describe_models(kind).items():
+            typer.echo(f"  {name:16} {description}")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; bad input is one line on standard error and exit code 2."""
+    try:
+        result = app(args=arguments, prog_name="limitsurf", standalone_mode=False)
+    except typer.TyperException as error:
+        return _fail(getattr(error, "format_message", error.__str__)())
+    except LimitSurfError as error:
+        return _fail(str(error))
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted")
+    return result if isinstance(result, int) else 0
+
+
+def _fail(message: str) -> int:
+    print("limitsurf: " + " ".join(message.split()), file=sys.stderr)
+    return 2

@@ -1,0 +1,83 @@
+"""Errors of limitsurf: one base, few children, each carrying its data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["InputError", "LimitSurfError", "ModelError", "NoPlan", "PartTooHeavy", "SolveFailed"]
+
+
+class LimitSurfError(Exception):
+    """Base of every error that limitsurf raises on purpose."""
+
+
+class InputError(LimitSurfError, ValueError):
+    """An argument has a value that cannot be used.
+
+    Parameters
+    ----------
+    argument : str
+        Name of the argument, option or field.
+    problem : str
+        What is wrong with it.
+    value : object, optional
+        The offending value; shown when it is short.
+    remedy : str, optional
+        What to do about it.
+    """
+
+    def __init__(self, argument: str, problem: str, *, value: Any = None, remedy: str = "") -> None:
+        self.argument, self.problem, self.value, self.remedy = argument, problem, value, remedy
+        got = "" if value is None or len(repr(value)) > 60 else f" (got {value!r})"
+        super().__init__(f"{argument}: {problem}{got}" + (f"; {remedy}" if remedy else ""))
+
+
+class ModelError(InputError):
+    """A model or outline file cannot be used; `file` and `argument` (the field) say where."""
+
+    def __init__(
+        self, file: object, field: str, problem: str, *, value: Any = None, remedy: str = ""
+    ) -> None:
+        self.file, self.field = str(file), field
+        where = f"{file}: {field}" if field else str(file)
+        super().__init__(where, problem, value=value, remedy=remedy)
+
+
+class PartTooHeavy(LimitSurfError):
+    """The active tips cannot carry the part at this voltage.
+
+    Parameters
+    ----------
+    weight_per_tip : float
+        Share of the part's weight on one active tip [N].
+    vertical_force : float
+        What one tip lifts at `voltage` [N].
+    voltage, lifting_voltage : float
+        The voltage in use and the one that would carry the part [V].
+    """
+
+    def __init__(
+        self, weight_per_tip: float, vertical_force: float, voltage: float, lifting_voltage: float
+    ) -> None:
+        self.weight_per_tip, self.vertical_force = weight_per_tip, vertical_force
+        self.voltage, self.lifting_voltage = voltage, lifting_voltage
+        super().__init__(
+            f"voltage: {voltage:g} V lifts {vertical_force:.3g} N per active tip, but the part "
+            f"puts {weight_per_tip:.3g} N on each; {lifting_voltage:.3g} V would lift it"
+        )
+
+
+class NoPlan(LimitSurfError):
+    """No sequence of lines meets the request; `reachable_margin` [rad] says what does."""
+
+    def __init__(self, reason: str, reachable_margin: float) -> None:
+        self.reason, self.reachable_margin = reason, reachable_margin
+        super().__init__(reason)
+
+
+class SolveFailed(LimitSurfError):
+    """A solver stopped before its certificate met the tolerance; `best` is what it had."""
+
+    def __init__(self, message: str, best: Any = None) -> None:
+        self.best = best
+        super().__init__(message)

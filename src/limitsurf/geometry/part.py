@@ -1,0 +1,195 @@
+"""A part: a flat rigid body given by its outline and areal density."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from limitsurf.errors import InputError
+from limitsurf.geometry.outline_files import read_part_file
+from limitsurf.geometry.outlines import as_polygon, directed_edges
+from limitsurf.units import parse_quantity
+
+__all__ = ["Part"]
+
+Array = NDArray[np.float64]
+
+
+class Part:
+    """A flat, rigid part of uniform areal density. Immutable.
+
+    Its reference point is the centre of mass, which for uniform density is the centroid.
+
+    Parameters
+    ----------
+    outline : (n, 2) float, or shapely Polygon or MultiPolygon
+        The outline in metres; rings may close themselves or not, in either direction. Holes and
+        several rigidly connected pieces are allowed.
+    areal_density : float or str, optional
+        Mass per area [kg/m^2], or a text such as ``"80 g/m^2"``. Motion needs it, planning does
+        not.
+    name : str, optional
+        For reports.
+
+    Raises
+    ------
+    InputError
+        An outline that is empty, crosses itself, has no area or no finite coordinates; an areal
+        density that is not positive.
+
+    Examples
+    --------
+    >>> part = Part([(0, 0), (2e-3, 0), (2e-3, 1e-3), (0, 1e-3)], "80 g/m^2")
+    >>> part
+    Part(4 vertices, 2 x 1 mm, 80 g/m^2)
+    """
+
+    def __init__(
+        self,
+        outline: ArrayLike | shapely.Geometry,
+        areal_density: float | str | None = None,
+        *,
+        name: str = "part",
+    ) -> None:
+        self._polygon = as_polygon(outline)
+        self._areal_density = _read_density(areal_density)
+        self._name = name
+
+    @classmethod
+    def from_file(
+        cls, path: str | Path, unit: str | None = None, areal_density: float | str | None = None
+    ) -> Part:
+        """Read a part from a drawing or a model file.
+
+        Parameters
+        ----------
+        path : str or Path
+            SVG (its y axis points down and is turned over), WKT, GeoJSON, a part model in TOML, or
+            the name of a shipped part model.
+        unit : str, optional
+            Length of one coordinate unit, such as ``"mm"``; required for WKT and GeoJSON, and
+            for an SVG without physical size.
+        areal_density : float or str, optional
+            Mass per area; overrides that of a model file.
+
+        Raises
+        ------
+        ModelError
+            The file cannot be read or does not hold an outline; says which field.
+        """
+        outline = read_part_file(path, unit)
+        density = outline.areal_density if areal_density is None else areal_density
+        return cls(outline.polygon, density, name=outline.name)
+
+    @property
+    def polygon(self) -> shapely.Geometry:
+        """The outline as given, holes and pieces included [m]."""
+        return self._polygon
+
+    @property
+    def areal_density(self) -> float | None:
+        """Mass per area [kg/m^2], None if not given."""
+        return self._areal_density
+
+    @property
+    def name(self) -> str:
+        """Name for reports."""
+        return self._name
+
+    @cached_property
+    def area(self) -> float:
+        """Area [m^2]."""
+        return float(shapely.area(self._polygon))
+
+    @cached_property
+    def centroid(self) -> tuple[float, float]:
+        """Centroid (x, y) in the coordinates of the outline [m]."""
+        corner = np.array(shapely.bounds(self._polygon)[:2])
+        near = shapely.transform(self._polygon, lambda points: points - corner)
+        x, y = shapely.get_coordinates(shapely.centroid(near))[0] + corner
+        return float(x), float(y)
+
+    @cached_property
+    def edges(self) -> Array:
+        """Directed edges (E, 4) ``x0, y0, x1, y1`` about the centroid, the part on their left."""
+        return directed_edges(self._polygon, self.centroid)
+
+    @cached_property
+    def unit_edges(self) -> Array:
+        """`edges` scaled to area 1."""
+        scaled: Array = self.edges / self.area**0.5
+        scaled.setflags(write=False)
+        return scaled
+
+    @cached_property
+    def polar_moment(self) -> float:
+        """Polar second moment of area about the centroid, ``integral r^2 dA`` [m^4]."""
+        x0, y0, x1, y1 = self.edges.T
+        cross = x0 * y1 - x1 * y0
+        return float(
+            np.sum(cross * (x0 * x0 + x0 * x1 + x1 * x1 + y0 * y0 + y0 * y1 + y1 * y1)) / 12
+        )
+
+    @cached_property
+    def circumradius(self) -> float:
+        """Largest distance of an outline point from the centroid [m]."""
+        return float(np.hypot(self.edges[:, 0], self.edges[:, 1]).max())
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]; raises if there is no areal density."""
+        if self._areal_density is None:
+            raise InputError(
+                "areal_density", "the part has none", remedy="give it, such as '80 g/m^2'"
+            )
+        return self._areal_density * self.area
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centre of mass [kg m^2]."""
+        return self.mass * self.polar_moment / self.area
+
+    @cached_property
+    def symmetry_order(self) -> int:
+        """Largest r such that a turn by 2 pi / r about the centroid maps the outline onto itself."""
+        x0, y0, x1, y1 = self.unit_edges.T
+        points = np.concatenate([x0 + 1j * y0, 0.5 * (x0 + x1) + 0.5j * (y0 + y1)])
+        tree = cKDTree(np.column_stack([points.real, points.imag]))
+        for order in range(len(x0), 1, -1):
+            turned = points * np.exp(2j * np.pi / order)
+            distance, _ = tree.query(np.column_stack([turned.real, turned.imag]))
+            if distance.max() <= 1e-9:
+                return order
+        return 1
+
+    def at(self, pose: ArrayLike) -> shapely.Geometry:
+        """Return the outline with the centre of mass at a pose ``(x, y, theta)`` [m, m, rad]."""
+        x, y, theta = np.asarray(pose, dtype=np.float64)
+        turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+        centroid = np.asarray(self.centroid)
+        return shapely.transform(
+            self._polygon, lambda points: (points - centroid) @ turn + np.array([x, y])
+        )
+
+    def __repr__(self) -> str:
+        """Return the size in millimetres and the density."""
+        left, bottom, right, top = 1e3 * np.array(shapely.bounds(self._polygon))
+        size = f"{right - left:.4g} x {top - bottom:.4g} mm"
+        density = "" if self.areal_density is None else f", {1e3 * self.areal_density:.4g} g/m^2"
+        return f"Part({len(self.edges)} vertices, {size}{density})"
+
+
+def _read_density(areal_density: float | str | None) -> float | None:
+    if areal_density is None:
+        return None
+    density = parse_quantity(areal_density, "kg/m^2", name="areal_density")
+    if density <= 0.0:
+        raise InputError(
+            "areal_density", "must be positive", value=areal_density, remedy="such as '80 g/m^2'"
+        )
+    return density

@@ -1,0 +1,1 @@
+"""Motion of parts on arrays."""

@@ -1,0 +1,1 @@
+"""The macroscopic planner: turn and squeeze functions, alignment plans, verification."""

@@ -1,0 +1,19 @@
+"""Pictures of limitsurf objects; the objects themselves have no plot method.
+
+Every function returns a plotly figure, with units on its axes: ``draw_part(part).show()``.
+"""
+
+from limitsurf.plot.errors import draw_errors
+from limitsurf.plot.part import draw_part
+from limitsurf.plot.runs import animate_runs
+from limitsurf.plot.squeeze import draw_plan, draw_squeeze_function
+from limitsurf.plot.turn import draw_turn_function
+
+__all__ = [
+    "animate_runs",
+    "draw_errors",
+    "draw_part",
+    "draw_plan",
+    "draw_squeeze_function",
+    "draw_turn_function",
+]

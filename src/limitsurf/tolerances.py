@@ -1,0 +1,31 @@
+"""Numerical tolerances, each with the reason for its size.
+
+All are relative: lengths to the square root of the part's area, angles in radians, forces to the
+sum of the contact radii and the load.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = ["ANGLE", "CONTACT_SUM", "FLAT_MOMENT", "FLATTEN", "LINE_MARGIN", "REST_SPEED"]
+
+#: Two orientations closer than this are one. Simple roots of U' are found to about 1e-15;
+#: a double root, which rounding splits, comes apart by the square root of that.
+ANGLE: Final = 1e-9
+
+#: |U'| below this (area 1, centroid at the origin) is rounding: a moment sum of terms of size 1.
+FLAT_MOMENT: Final = 2e-15
+
+#: Error bound that a projection on a sum of contacts must certify, relative to sum m_i + |c|.
+CONTACT_SUM: Final = 1e-9
+
+#: Chord error when curves of a drawing become polygons, relative to the drawing's diagonal.
+FLATTEN: Final = 2e-4
+
+#: A plan whose margin is below this is no plan: rounding alone could break it.
+LINE_MARGIN: Final = 1e-9
+
+#: Slower than this, relative to the speed that the drive can give, is at rest. Friction lets an
+#: overdamped part approach the edge of its resting set exponentially, without ever reaching it.
+REST_SPEED: Final = 1e-5
