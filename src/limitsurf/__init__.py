@@ -47,7 +47,7 @@ _HOME = {
 }
 _MODULES = ("errors", "plot", "units")
 
-__all__ = [*_HOME, *_MODULES]  # noqa: PLE0604
+__all__ = [*_HOME, *_MODULES]
 
 
 def __getattr__(name: str) -> Any:

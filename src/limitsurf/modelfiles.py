@@ -17,7 +17,15 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError
 from limitsurf.errors import InputError, ModelError
 from limitsurf.units import parse_quantity
 
-__all__ = ["Model", "Sourced", "describe_models", "find_model", "list_models", "load_model", "number"]
+__all__ = [
+    "Model",
+    "Sourced",
+    "describe_models",
+    "find_model",
+    "list_models",
+    "load_model",
+    "number",
+]
 
 
 class Model(BaseModel):
@@ -53,14 +61,18 @@ def number(unit: str, *, above: float | None = None, at_least: float | None = No
 
     def read(raw: Any) -> Sourced:
         if not isinstance(raw, Mapping):
-            raise ValueError("write it as { value = ..., source = ... } or { value = ..., assumed = ... }")
+            raise ValueError(
+                "write it as { value = ..., source = ... } or { value = ..., assumed = ... }"
+            )
         unknown = sorted(set(raw) - {"value", "source", "assumed"})
         if unknown:
-            raise ValueError(f"unknown key {unknown[0]!r}; a number has value, and source or assumed")
+            raise ValueError(
+                f"unknown key {unknown[0]!r}; a number has value, and source or assumed"
+            )
         if "value" not in raw or ("source" in raw) == ("assumed" in raw):
             raise ValueError("needs value and exactly one of source, assumed")
         if unit and not isinstance(raw["value"], str):
-            raise ValueError(f"value needs a unit, such as \"{raw['value']} {unit}\"")
+            raise ValueError(f'value needs a unit, such as "{raw["value"]} {unit}"')
         value = parse_quantity(raw["value"], unit, name="value")
         if above is not None and not value > above:
             raise ValueError(f"must be greater than {above:g} (got {raw['value']!r})")

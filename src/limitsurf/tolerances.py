@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["ANGLE", "CONTACT_SUM", "FLAT_MOMENT", "FLATTEN", "LINE_MARGIN", "REST_SPEED"]
+__all__ = ["ANGLE", "CONTACT_SUM", "FLATTEN", "FLAT_MOMENT", "LINE_MARGIN", "REST_SPEED"]
 
 #: Two orientations closer than this are one. Simple roots of U' are found to about 1e-15;
 #: a double root, which rounding splits, comes apart by the square root of that.

@@ -69,7 +69,9 @@ def _parse_text(text: str, unit: str, name: str) -> float:
             raise InputError(name, "has no unit", value=text, remedy=_example(unit))
         return float(quantity.to(unit or "dimensionless").magnitude)
     except pint.UndefinedUnitError as error:
-        raise InputError(name, f"unknown unit: {error}", value=text, remedy=_example(unit)) from error
+        raise InputError(
+            name, f"unknown unit: {error}", value=text, remedy=_example(unit)
+        ) from error
     except pint.DimensionalityError as error:
         raise InputError(
             name, f"is not in a unit of [{unit or '1'}]", value=text, remedy=_example(unit)

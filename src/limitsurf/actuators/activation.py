@@ -43,9 +43,7 @@ class Activation:
         """Check the shape against the array."""
         expected = self.array.site_directions.shape[:2]
         if self.active.shape != expected or self.active.dtype != np.bool_:
-            raise InputError(
-                "active", f"must be bool of shape {expected}", value=self.active.shape
-            )
+            raise InputError("active", f"must be bool of shape {expected}", value=self.active.shape)
 
     def __repr__(self) -> str:
         """Return the number of running actuators."""
@@ -82,8 +80,7 @@ def squeeze_activation(
         raise InputError("line", "must be a finite angle", value=line)
     if method not in ("dither", "nearest"):
         raise InputError("method", "is unknown", value=method, remedy="use dither or nearest")
-    rows, columns = array.pixel.directions.shape[:2]
-    wanted = _pixel_directions(array, line, method).repeat(rows, axis=0).repeat(columns, axis=1)
+    wanted = _pixel_directions(array, line, method).repeat(2, axis=0).repeat(2, axis=1)
     active: NDArray[np.bool_] = np.sum(wanted * array.site_directions, axis=-1) > 0.5
     return Activation(array, active, float(line))
 
@@ -100,7 +97,8 @@ def _pixel_directions(array: ActuatorArray, line: float, method: Method) -> NDAr
         i, j = np.indices((array.rows, array.columns))
         threshold = np.mod(0.5 + _DITHER[0] * j + _DITHER[1] * i, 1.0)
     along_x = threshold < share
-    return np.where(along_x[..., None], [1.0, 0.0], [0.0, 1.0]) * np.sign(towards)
+    axis = np.where(along_x[..., None], [1.0, 0.0], [0.0, 1.0])
+    return np.asarray(axis * np.sign(towards))
 
 
 def _sides(array: ActuatorArray, line: float) -> NDArray[np.float64]:
@@ -112,7 +110,7 @@ def _sides(array: ActuatorArray, line: float) -> NDArray[np.float64]:
     centers = array.pixel_centers
     offset = np.cos(line) * centers[..., 1] - np.sin(line) * centers[..., 0]
     along = np.cos(line) * centers[..., 0] + np.sin(line) * centers[..., 1]
-    sides = np.sign(offset)
+    sides = np.asarray(np.sign(offset))
     on_line = np.abs(offset) < 1e-9 * array.pixel.pitch
     rank = np.argsort(np.argsort(along[on_line]))
     sides[on_line] = np.where(rank % 2 == 0, 1.0, -1.0)
@@ -125,7 +123,7 @@ def direction_error(activation: Activation) -> float:
     if line is None:
         raise InputError("activation", "has no line", remedy="use squeeze_activation")
     normal = np.array([-np.sin(line), np.cos(line)])
-    side = np.kron(_sides(array, line), np.ones(array.pixel.directions.shape[:2]))
+    side = np.kron(_sides(array, line), np.ones((2, 2)))
     errors = []
     for sign in (-1.0, 1.0):
         push = array.site_directions[activation.active & (side == sign)].sum(axis=0)

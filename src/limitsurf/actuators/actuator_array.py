@@ -56,7 +56,7 @@ class ActuatorArray:
     @property
     def site_pitch(self) -> float:
         """Distance of neighbouring actuators [m]."""
-        return self.pixel.pitch / self.pixel.directions.shape[0]
+        return self.pixel.pitch / 2
 
     @property
     def site_directions(self) -> NDArray[np.float64]:

@@ -7,13 +7,17 @@ import shutil
 import tempfile
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
 from limitsurf.errors import InputError
+
+if TYPE_CHECKING:
+    from limitsurf.planning.turn_function import TurnFunction
+    from limitsurf.planning.verification import Verification
 
 __all__ = ["align"]
 
@@ -38,9 +42,12 @@ def align(
         Path | None, typer.Option(help="Folder for plan.json, runs.nc and report.html.")
     ] = None,
     method: Annotated[
-        str, typer.Option(help="Directions of the pixels: dither, or nearest axis.")
+        Literal["dither", "nearest"],
+        typer.Option(help="Directions of the pixels: dither, or nearest axis."),
     ] = "dither",
-    mode: Annotated[str, typer.Option(help="Motion: inertial or quasi-static.")] = "inertial",
+    mode: Annotated[
+        Literal["inertial", "quasi-static"], typer.Option(help="How the part moves.")
+    ] = "inertial",
     start_offset: Annotated[
         str | None, typer.Option(help="Radius of the disk of starts, such as '1 mm'.")
     ] = None,
@@ -61,13 +68,22 @@ def align(
     the_part = Part.from_file(part, unit=unit, areal_density=areal_density)
     volts = None if voltage is None else parse_quantity(_number(voltage), "V", name="voltage")
     the_array = load_array(array, voltage=volts)
-    offset = None if start_offset is None else parse_quantity(start_offset, "m", name="start_offset")
+    offset = (
+        None if start_offset is None else parse_quantity(start_offset, "m", name="start_offset")
+    )
     margin = parse_quantity(min_margin, "rad", name="min_margin")
     plan = plan_alignment(the_part, min_margin=margin)
     verification = verify_alignment(
-        plan, the_part, the_array, samples, seed,
-        mode=mode, method=method, start_offset=offset, progress=True,  # type: ignore[arg-type]
-    )  # fmt: skip
+        plan,
+        the_part,
+        the_array,
+        samples,
+        seed,
+        mode=mode,
+        method=method,
+        start_offset=offset,
+        progress=True,
+    )
     turn = turn_function(the_part)
     if out is not None:
         _write(out, turn, verification)
@@ -91,14 +107,14 @@ def _check_out(out: Path | None) -> None:
     """Raise before the long work if the output folder cannot be used."""
     if out is None:
         return
-    if out.exists() and not out.is_dir():
-        raise InputError("out", f"{out} is a file", remedy="name a folder")
-    parent = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
-    if not os.access(parent, os.W_OK):
-        raise InputError("out", f"{parent} cannot be written", remedy="name another folder")
+    nearest = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
+    if not nearest.is_dir():
+        raise InputError("out", f"{nearest} is a file", remedy="name a folder")
+    if not os.access(nearest, os.W_OK):
+        raise InputError("out", f"{nearest} cannot be written", remedy="name another folder")
 
 
-def _write(out: Path, turn, verification) -> None:  # type: ignore[no-untyped-def]
+def _write(out: Path, turn: TurnFunction, verification: Verification) -> None:
     """Write all files beside the folder first, then move them in: never a half-written one."""
     from limitsurf.report.alignment import alignment_page
 
@@ -113,7 +129,7 @@ def _write(out: Path, turn, verification) -> None:  # type: ignore[no-untyped-de
             shutil.move(draft / name, out / name)
 
 
-def _print(turn, verification, seconds: float) -> None:  # type: ignore[no-untyped-def]
+def _print(turn: TurnFunction, verification: Verification, seconds: float) -> None:
     from limitsurf.report.alignment import plan_rows, summary_rows, verdict
 
     console = Console()

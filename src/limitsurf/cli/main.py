@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Annotated
 
 import typer
 
+from limitsurf import __version__
 from limitsurf.cli.align import align
 from limitsurf.errors import LimitSurfError
 
@@ -14,11 +16,26 @@ __all__ = ["app", "main"]
 
 app = typer.Typer(
     name="limitsurf",
-    help="Contact mechanics and sensorless alignment on actuator arrays.",
     no_args_is_help=True,
     add_completion=False,
 )
 app.command()(align)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"limitsurf {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Contact mechanics and sensorless alignment on actuator arrays."""
 
 
 @app.command()

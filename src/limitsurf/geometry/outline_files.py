@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import shapely
 from pydantic import model_validator
 from shapely.errors import ShapelyError
@@ -103,7 +104,8 @@ def _read_drawing(path: Path, scale: float | None) -> shapely.Geometry:
     if scale is None:
         raise InputError("unit", f"{suffix} has no units", remedy="add --unit, such as --unit mm")
     try:
-        shape = readers[suffix](text)
+        with np.errstate(invalid="ignore"):  # NaN in a file: as_polygon says what to do
+            shape = readers[suffix](text)
     except (ShapelyError, ValueError) as error:
         raise InputError("outline", f"cannot be read: {error}", remedy="check the file") from error
     if shape.geom_type == "GeometryCollection":

@@ -156,7 +156,7 @@ class Part:
 
     @cached_property
     def symmetry_order(self) -> int:
-        """Largest r such that a turn by 2 pi / r about the centroid maps the outline onto itself."""
+        """Largest r such that a turn by 2 pi / r about the centroid changes nothing."""
         x0, y0, x1, y1 = self.unit_edges.T
         points = np.concatenate([x0 + 1j * y0, 0.5 * (x0 + x1) + 0.5j * (y0 + y1)])
         tree = cKDTree(np.column_stack([points.real, points.imag]))

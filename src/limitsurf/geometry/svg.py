@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 from typing import Any
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import shapely
@@ -41,8 +41,8 @@ def read_svg(text: str, unit: float | None = None) -> shapely.Geometry:
         No XML, no physical size, no closed outline, or a ring that crosses itself.
     """
     try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
+        root = ET.fromstring(text)
+    except ET.ParseError as error:
         raise InputError("svg", f"is no XML: {error}", remedy="save it again as SVG") from error
     scale = _user_unit(root) if unit is None else unit
     for name in ("width", "height", "viewBox", "preserveAspectRatio"):
@@ -54,7 +54,7 @@ def read_svg(text: str, unit: float | None = None) -> shapely.Geometry:
     return shapely.transform(area, lambda points: points * np.array([scale, -scale]))
 
 
-def _user_unit(root: ElementTree.Element) -> float:
+def _user_unit(root: ET.Element) -> float:
     """Return the length of one user unit [m] from the size and viewBox of the document."""
     size = [_LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height")]
     if size[0] is None or size[1] is None:
@@ -74,16 +74,18 @@ def _user_unit(root: ElementTree.Element) -> float:
     if len(box) != 4 or min(box[2:]) <= 0.0:
         raise InputError("viewBox", "must be four numbers, width and height positive", value=box)
     scales = [length / extent for length, extent in zip(metres, box[2:], strict=True)]
-    if root.get("preserveAspectRatio", "").strip() == "none" and not np.isclose(*scales):
+    if root.get("preserveAspectRatio", "").strip() == "none" and not np.isclose(
+        scales[0], scales[1]
+    ):
         raise InputError("viewBox", "stretches the drawing", remedy="use one scale for x and y")
     return min(scales)
 
 
-def _closed_elements(root: ElementTree.Element) -> list[list[Array]]:
+def _closed_elements(root: ET.Element) -> list[list[Array]]:
     """Return, for every drawn element, its closed rings."""
     import svgelements
 
-    document = svgelements.SVG.parse(io.StringIO(ElementTree.tostring(root, encoding="unicode")))
+    document = svgelements.SVG.parse(io.StringIO(ET.tostring(root, encoding="unicode")))
     paths = [
         svgelements.Path(element)
         for element in document.elements()
@@ -123,7 +125,9 @@ def _chords(segment: Any, tolerance: float) -> Array:
     """Return points on a curve, twice as many until no chord is farther off than `tolerance`."""
     n = 2
     while True:
-        both = np.array([[p.x, p.y] for p in (segment.point(k / (2 * n)) for k in range(2 * n + 1))])
+        both = np.array(
+            [[p.x, p.y] for p in (segment.point(k / (2 * n)) for k in range(2 * n + 1))]
+        )
         ends, middles = both[::2], both[1::2]
         off = np.hypot(*(middles - 0.5 * (ends[1:] + ends[:-1])).T)
         if off.max() <= tolerance or n >= 4096:

@@ -6,19 +6,48 @@ except for the sign of zero.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
-from typing import TypeVar
+from pathlib import Path
+from typing import TypeVar, cast
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-__all__ = ["compiled"]
+__all__ = ["Bools", "Floats", "Ints", "compiled"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
 
 F = TypeVar("F", bound=Callable[..., object])
 
 
 def compiled(function: F) -> F:
     """Compile a plain function on arrays and floats."""
-    kernel: F = njit(
-        cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}
-    )(function)
-    return kernel
+    flags = {"reassoc", "contract", "nsz"}
+    return cast(F, njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function))
+
+
+def drop_stale_caches(folder: Path) -> bool:
+    """Delete the compiled kernels of a folder if any of its sources changed; return whether.
+
+    Numba recompiles a function when its own file changes, but not when a function that it calls
+    changed in another file.
+    """
+    cache = folder / "__pycache__"
+    stamp = cache / "kernels.stamp"
+    sources = sorted(folder.glob("*.py"))
+    state = "\n".join(f"{p.name} {p.stat().st_mtime_ns} {p.stat().st_size}" for p in sources)
+    if stamp.exists() and stamp.read_text(encoding="utf-8") == state:
+        return False
+    with contextlib.suppress(OSError):  # a read-only folder holds no caches either
+        cache.mkdir(exist_ok=True)
+        for compiled_file in [*cache.glob("*.nbi"), *cache.glob("*.nbc")]:
+            compiled_file.unlink(missing_ok=True)
+        stamp.write_text(state, encoding="utf-8")
+    return True
+
+
+drop_stale_caches(Path(__file__).parent)

@@ -7,8 +7,8 @@ metric is the identity. For a load c,
 
 is the (scaled) twist and :math:`c - v^*` the point of the sum closest to c. The kinks are
 smoothed, :math:`|u| \to \sqrt{|u|^2+\epsilon^2}`, and Newton's method follows the minimiser while
-:math:`\epsilon` falls. The forces :math:`f_i = -m_i u_i/\sqrt{|u_i|^2+\epsilon^2}` are admissible, so that for
-every v, with :math:`F = \sum_i G_i f_i`,
+:math:`\epsilon` falls. The forces :math:`f_i = -m_i u_i/\sqrt{|u_i|^2+\epsilon^2}` are admissible,
+so that for every v, with :math:`F = \sum_i G_i f_i`,
 
 .. math:: |F - F^*|^2 \le |v - c - F|^2 + 2 \sum_i (m_i |u_i| + f_i \cdot u_i)
 
@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from limitsurf.kernels.compile import compiled
+from limitsurf.kernels.compile import Floats, compiled
 
 __all__ = ["solve_contact_sum"]
 
@@ -30,7 +30,9 @@ _EPS = float(np.finfo(np.float64).eps)
 
 
 @compiled
-def _smoothed(x, y, m, v, eps, grad, hess):
+def _smoothed(
+    x: Floats, y: Floats, m: Floats, v: Floats, eps: float, grad: Floats, hess: Floats
+) -> tuple[float, float]:
     """Return ``sum m_i s_i`` (s_i the smoothed speed) and the gap; fill gradient and Hessian.
 
     The gap ``2 sum m_i (|u| - |u|^2/s)`` is written as ``2 m |u| eps^2 / (s (s + |u|))``: no
@@ -72,14 +74,14 @@ def _smoothed(x, y, m, v, eps, grad, hess):
 
 
 @compiled
-def _newton_step(hess, residual, step):
-    """Solve ``(I + H) step = residual`` by Cholesky; I + H is positive definite."""
-    l00 = math.sqrt(1.0 + hess[0])
+def _newton_step(hess: Floats, shift: float, residual: Floats, step: Floats) -> None:
+    """Solve ``(shift I + H) step = residual`` by Cholesky; H is positive semidefinite."""
+    l00 = math.sqrt(shift + hess[0])
     l10 = hess[1] / l00
     l20 = hess[3] / l00
-    l11 = math.sqrt(max(1.0 + hess[2] - l10 * l10, 0.5))
+    l11 = math.sqrt(max(shift + hess[2] - l10 * l10, 0.5 * shift))
     l21 = (hess[4] - l20 * l10) / l11
-    l22 = math.sqrt(max(1.0 + hess[5] - l20 * l20 - l21 * l21, 0.5))
+    l22 = math.sqrt(max(shift + hess[5] - l20 * l20 - l21 * l21, 0.5 * shift))
     z0 = residual[0] / l00
     z1 = (residual[1] - l10 * z0) / l11
     z2 = (residual[2] - l20 * z0 - l21 * z1) / l22
@@ -89,13 +91,28 @@ def _newton_step(hess, residual, step):
 
 
 @compiled
-def _norm(a):
+def _norm(a: Floats) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @compiled
-def _minimise(x, y, m, c, eps, target, max_passes, v, friction, best):
+def _minimise(
+    x: Floats,
+    y: Floats,
+    m: Floats,
+    c: Floats,
+    eps: float,
+    inertia: float,
+    target: float,
+    max_passes: int,
+    v: Floats,
+    friction: Floats,
+    best: Floats,
+) -> int:
     """Newton with backtracking at one eps; returns passes used.
+
+    `inertia` is 1 for the dual itself; 0 leaves out its quadratic term, and then a minimiser
+    exists just where the load lies inside the sum: the forces found there balance it.
 
     `v` is moved to the minimiser. `best` holds ``(bound, sticks)`` of the best certificate seen
     and `friction` its F; the loop ends as soon as that bound reaches `target`.
@@ -111,18 +128,18 @@ def _minimise(x, y, m, c, eps, target, max_passes, v, friction, best):
     while passes < max_passes:
         smooth, gap = _smoothed(x, y, m, trial, eps, grad, hess)
         passes += 1
-        value = smooth - _dot(c, trial) + 0.5 * _dot(trial, trial)
+        value = smooth - _dot(c, trial) + 0.5 * inertia * _dot(trial, trial)
         if value > value_old + 1e-4 * length * slope + 4 * _EPS * abs(smooth) and length > 1e-6:
             length *= 0.4
             trial[:] = v + length * step
             continue
         v[:] = trial
         value_old = value
-        residual = c - grad - v
-        _keep_best(c, grad, residual, gap, v, friction, best)
+        _keep_best(c, grad, v, gap, friction, best)
+        residual = c - grad - inertia * v
         if best[0] <= target or _norm(residual) <= 0.1 * min(target, eps):
             break
-        _newton_step(hess, residual, step)
+        _newton_step(hess, inertia + 1e-14 * (hess[0] + hess[2] + hess[5]), residual, step)
         slope = -_dot(residual, step)
         length = 1.0
         trial[:] = v + step
@@ -130,12 +147,16 @@ def _minimise(x, y, m, c, eps, target, max_passes, v, friction, best):
 
 
 @compiled
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def _dot(a: Floats, b: Floats) -> float:
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
 @compiled
-def _keep_best(c, grad, residual, gap, v, friction, best):
+def _keep_best(
+    c: Floats, grad: Floats, v: Floats, gap: float, friction: Floats, best: Floats
+) -> None:
+    """Keep F = -grad if the certificate for the twist v, or for rest, is better than the best."""
+    residual = c - grad - v
     moving = math.sqrt(_dot(residual, residual) + gap)
     resting = _norm(c - grad)
     bound = min(moving, resting)
@@ -146,7 +167,9 @@ def _keep_best(c, grad, residual, gap, v, friction, best):
 
 
 @compiled
-def solve_contact_sum(x, y, m, c, start, tol):
+def solve_contact_sum(
+    x: Floats, y: Floats, m: Floats, c: Floats, start: Floats, tol: float
+) -> tuple[Floats, Floats, float, bool, int]:
     """Return ``(v, F, bound, sticks, passes)`` for the load `c`.
 
     Parameters
@@ -184,13 +207,17 @@ def solve_contact_sum(x, y, m, c, start, tol):
     target = max(tol * scale - rounding, 0.5 * tol * scale)
     best = np.array([np.inf, 0.0])
     v = start.copy()
-    passes = _minimise(x, y, m, c, 1e-13 * scale, target, 12, v, friction, best)
+    passes = _minimise(x, y, m, c, 1e-13 * scale, 1.0, target, 12, v, friction, best)
     eps = scale
     v[:] = c / (1.0 + total / eps)
+    speed = np.inf
     while best[0] > target and eps > 1e-16 * scale:
-        passes += _minimise(x, y, m, c, eps, target, 12, v, friction, best)
-        if _norm(v) < 3.0 * eps:
-            v *= 0.1  # at rest the smoothed twist shrinks with eps
+        passes += _minimise(x, y, m, c, eps, 1.0, target, 12, v, friction, best)
+        if best[0] > target and _norm(v) < 0.3 * speed:  # the twist falls with eps: at rest
+            rest = v.copy()
+            passes += _minimise(x, y, m, c, eps, 0.0, target, 12, rest, friction, best)
+            v *= 0.1
+        speed = _norm(v)
         eps *= 0.1
     sticks = best[1] == 1.0 and best[0] <= target
     twist = np.zeros(3) if sticks else c + friction

@@ -12,13 +12,13 @@ import math
 
 import numpy as np
 
-from limitsurf.kernels.compile import compiled
+from limitsurf.kernels.compile import Bools, Floats, Ints, compiled
 
 __all__ = ["covered_sites"]
 
 
 @compiled
-def _row_spans(edges, y, xs):
+def _row_spans(edges: Floats, y: float, xs: Floats) -> int:
     """Fill `xs` with the sorted abscissae where the outline crosses the height y; return count."""
     count = 0
     for i in range(edges.shape[0]):
@@ -35,17 +35,17 @@ def _row_spans(edges, y, xs):
 
 
 @compiled
-def _first(position, origin, pitch):
-    return max(int(math.ceil((position - origin) / pitch)), 0)
+def _first(position: float, origin: float, pitch: float) -> int:
+    return max(math.ceil((position - origin) / pitch), 0)
 
 
 @compiled
-def _last(position, origin, pitch, n):
-    return min(int(math.floor((position - origin) / pitch)), n - 1)
+def _last(position: float, origin: float, pitch: float, n: int) -> int:
+    return min(math.floor((position - origin) / pitch), n - 1)
 
 
 @compiled
-def _distance_to_edge(px, py, x0, y0, x1, y1):
+def _distance_to_edge(px: float, py: float, x0: float, y0: float, x1: float, y1: float) -> float:
     dx, dy = x1 - x0, y1 - y0
     length2 = dx * dx + dy * dy
     along = ((px - x0) * dx + (py - y0) * dy) / length2 if length2 > 0.0 else 0.0
@@ -54,7 +54,18 @@ def _distance_to_edge(px, py, x0, y0, x1, y1):
 
 
 @compiled
-def covered_sites(edges, origin_x, origin_y, pitch, active, width, slot, rows, cols, share):
+def covered_sites(
+    edges: Floats,
+    origin_x: float,
+    origin_y: float,
+    pitch: float,
+    active: Bools,
+    width: float,
+    slot: Ints,
+    rows: Ints,
+    cols: Ints,
+    share: Floats,
+) -> int:
     """Fill `rows`, `cols`, `share` with the active sites under the outline; return their number.
 
     Parameters
@@ -100,7 +111,19 @@ def covered_sites(edges, origin_x, origin_y, pitch, active, width, slot, rows, c
 
 
 @compiled
-def _grade_edge(edge, origin_x, origin_y, pitch, active, width, slot, rows, cols, share, count):
+def _grade_edge(
+    edge: Floats,
+    origin_x: float,
+    origin_y: float,
+    pitch: float,
+    active: Bools,
+    width: float,
+    slot: Ints,
+    rows: Ints,
+    cols: Ints,
+    share: Floats,
+    count: int,
+) -> int:
     """Give the sites within b/2 of one edge their partial share; return the new count."""
     n_rows, n_cols = active.shape
     half = 0.5 * width

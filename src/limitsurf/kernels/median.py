@@ -1,7 +1,8 @@
 r"""The median of a polygon and the energy of a squeeze field, from line integrals over its edges.
 
-With :math:`u = (\cos\theta, \sin\theta)`, :math:`n = (-\sin\theta, \cos\theta)`, :math:`s = u\cdot x`,
-:math:`t = n\cdot x` and the region kept on the left of its edges, Green's theorem gives
+With :math:`u = (\cos\theta, \sin\theta)`, :math:`n = (-\sin\theta, \cos\theta)`,
+:math:`s = u\cdot x`, :math:`t = n\cdot x` and the region kept on the left of its edges, Green's
+theorem gives
 
 .. math::
     A_{left}(z) &= \int_{t>z} dA = -\oint (t-z)^+ ds \\
@@ -18,13 +19,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from limitsurf.kernels.compile import compiled
+from limitsurf.kernels.compile import Floats, compiled
 
 __all__ = ["area_left", "left_areas", "median_offset", "squeeze_states"]
 
 
 @compiled
-def area_left(edges, theta, z):
+def area_left(edges: Floats, theta: float, z: float) -> tuple[float, float]:
     """Return the area where ``n.x > z`` and the length of the chords on the line ``n.x = z``."""
     cos, sin = np.cos(theta), np.sin(theta)
     area = 0.0
@@ -46,7 +47,7 @@ def area_left(edges, theta, z):
 
 
 @compiled
-def median_offset(edges, theta, half_area):
+def median_offset(edges: Floats, theta: float, half_area: float) -> float:
     """Return z with ``area_left(z) = half_area``: Newton steps kept inside a bracket.
 
     The area is a decreasing, piecewise quadratic function of z, its slope minus the chord.
@@ -79,7 +80,7 @@ def median_offset(edges, theta, half_area):
 
 
 @compiled
-def _squeeze_state(edges, theta, half_area, out):
+def _squeeze_state(edges: Floats, theta: float, half_area: float, out: Floats) -> None:
     z = median_offset(edges, theta, half_area)
     cos, sin = np.cos(theta), np.sin(theta)
     energy = 0.0
@@ -115,7 +116,7 @@ def _squeeze_state(edges, theta, half_area, out):
 
 
 @compiled
-def squeeze_states(edges, theta, half_area):
+def squeeze_states(edges: Floats, theta: Floats, half_area: float) -> Floats:
     """Return rows ``(z, U, U', J, chord length, s_m)`` at the medians of directions `theta`."""
     out = np.empty((theta.shape[0], 6))
     for k in range(theta.shape[0]):
@@ -124,7 +125,7 @@ def squeeze_states(edges, theta, half_area):
 
 
 @compiled
-def left_areas(edges, theta, px, py):
+def left_areas(edges: Floats, theta: Floats, px: float, py: float) -> Floats:
     """Return the areas left of the lines through the point ``(px, py)`` in directions `theta`."""
     out = np.empty(theta.shape[0])
     for k in range(theta.shape[0]):

@@ -18,9 +18,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from limitsurf.kernels.compile import compiled
+from limitsurf.kernels.compile import Bools, Floats, Ints, compiled
 from limitsurf.kernels.contact_sum import solve_contact_sum
 from limitsurf.kernels.lattice import covered_sites
 
@@ -36,10 +35,10 @@ class Body(NamedTuple):
     """
 
     reach: float
-    edges: NDArray[np.float64]
+    edges: Floats
     weight: float
-    mass: NDArray[np.float64]
-    drag: NDArray[np.float64]
+    mass: Floats
+    drag: Floats
 
 
 class Ground(NamedTuple):
@@ -52,8 +51,8 @@ class Ground(NamedTuple):
     origin_x: float
     origin_y: float
     pitch: float
-    active: NDArray[np.bool_]
-    directions: NDArray[np.float64]
+    active: Bools
+    directions: Floats
     tip_width: float
     push: float
     grip: float
@@ -61,8 +60,8 @@ class Ground(NamedTuple):
 
 
 @compiled
-def _place(edges, pose, out):
-    """Move the edges to a pose; return whether the bounding box is finite."""
+def _place(edges: Floats, pose: Floats, out: Floats) -> None:
+    """Move the edges to a pose."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     for i in range(edges.shape[0]):
         for k in (0, 2):
@@ -71,7 +70,7 @@ def _place(edges, pose, out):
 
 
 @compiled
-def _on_array(edges, ground):
+def _on_array(edges: Floats, ground: Ground) -> bool:
     """Return whether all vertices lie over the cells of the sites."""
     half = 0.5 * ground.pitch
     rows, columns = ground.active.shape
@@ -84,16 +83,27 @@ def _on_array(edges, ground):
 
 
 @compiled
-def _slow(body, twist, load, speed):
+def _slow(body: Body, twist: Floats, load: Floats, speed: float) -> bool:
     """Return whether the part, rim included, moves and will move slower than `speed`."""
     moving = math.hypot(twist[0], twist[1]) + body.reach * abs(twist[2])
     terminal = math.hypot(load[0], load[1]) / body.drag[0]
     terminal += body.reach * abs(load[2]) / body.drag[2]
-    return max(moving, terminal) < speed
+    return bool(max(moving, terminal) < speed)
 
 
 @compiled
-def slide(body, ground, pose, twist, dt, steps, stride, tol, rest_speed, frames):
+def slide(
+    body: Body,
+    ground: Ground,
+    pose: Floats,
+    twist: Floats,
+    dt: float,
+    steps: int,
+    stride: int,
+    tol: float,
+    rest_speed: float,
+    frames: Floats,
+) -> tuple[int, int, int, float, float]:
     """Move a part until it rests, leaves, sinks or the steps are used up.
 
     Parameters
@@ -143,9 +153,17 @@ def slide(body, ground, pose, twist, dt, steps, stride, tol, rest_speed, frames)
             status = LEFT_ARRAY
         else:
             count = covered_sites(
-                edges, ground.origin_x, ground.origin_y, ground.pitch, ground.active,
-                ground.tip_width, slot, rows, columns, share,
-            )  # fmt: skip
+                edges,
+                ground.origin_x,
+                ground.origin_y,
+                ground.pitch,
+                ground.active,
+                ground.tip_width,
+                slot,
+                rows,
+                columns,
+                share,
+            )
             normal = body.weight / share[:count].sum() if count > 0 else np.inf
             heaviest = max(heaviest, normal)
             if normal > ground.lift:
@@ -182,7 +200,19 @@ def slide(body, ground, pose, twist, dt, steps, stride, tol, rest_speed, frames)
 
 
 @compiled
-def _sum_contacts(ground, pose, rho, normal, rows, columns, share, count, x, y, load):
+def _sum_contacts(
+    ground: Ground,
+    pose: Floats,
+    rho: float,
+    normal: float,
+    rows: Ints,
+    columns: Ints,
+    share: Floats,
+    count: int,
+    x: Floats,
+    y: Floats,
+    load: Floats,
+) -> None:
     """Set scaled positions, turn shares into friction radii, and sum the pushes to a load."""
     load[:] = 0.0
     for i in range(count):

@@ -53,9 +53,7 @@ def time_scales(part: Part, array: ActuatorArray) -> TimeScales:
     terminal = part.mass * acceleration / air_film_drag(part, array)[0]
     speed = min(terminal, np.sqrt(2 * acceleration * part.circumradius))
     reach = array.pixel.tip_width or 0.1 * array.site_pitch
-    return TimeScales(
-        float(speed), float(reach / speed), float(60 * part.circumradius / speed)
-    )
+    return TimeScales(float(speed), float(reach / speed), float(60 * part.circumradius / speed))
 
 
 def check_lift(part: Part, array: ActuatorArray) -> None:
@@ -130,9 +128,17 @@ def simulate(
     end, speed = _vector("pose", pose), _vector("twist", twist)
     rows = np.empty((steps // stride + 3, 12))
     status, _, written, worst, heaviest = slide(
-        _body(part, array, mode), _ground(drive), end, speed, dt, steps, stride,
-        CONTACT_SUM, REST_SPEED * scales.speed, rows,
-    )  # fmt: skip
+        _body(part, array, mode),
+        _ground(drive),
+        end,
+        speed,
+        dt,
+        steps,
+        stride,
+        CONTACT_SUM,
+        REST_SPEED * scales.speed,
+        rows,
+    )
     outcome = Outcome(status)
     if outcome is Outcome.NOT_LIFTED and np.isfinite(heaviest):
         _refuse_heavy(heaviest, array)

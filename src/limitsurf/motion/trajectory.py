@@ -81,7 +81,11 @@ class Trajectory:
         """Return the record as an xarray dataset with units."""
         import xarray
 
-        axes = {"pose": ["x", "y", "theta"], "twist": ["vx", "vy", "omega"], "load": ["fx", "fy", "m"]}
+        axes = {
+            "pose": ["x", "y", "theta"],
+            "twist": ["vx", "vy", "omega"],
+            "load": ["fx", "fy", "m"],
+        }
         data = {
             "poses": (("time", "pose"), self.poses, {"units": "m, m, rad"}),
             "twists": (("time", "twist"), self.twists, {"units": "m/s, m/s, rad/s"}),

@@ -10,6 +10,7 @@ requirement, so raising it until the plan grows finds the best.
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,7 +56,7 @@ class AlignmentPlan:
     squeeze: SqueezeFunction
 
     def predict(self, phi: ArrayLike) -> Array:
-        """Return the orientation, in [0, pi), at which the plan leaves a part that starts at phi."""
+        """Return the orientation, in [0, pi), where the plan leaves a part that starts at phi."""
         orientation = np.asarray(phi, dtype=np.float64)
         for line in self.lines:
             orientation = self.squeeze(orientation - line) + line
@@ -82,7 +83,9 @@ class AlignmentPlan:
         """Read a plan from JSON text or from a file."""
         source = text if isinstance(text, Path) else "plan"
         try:
-            record = json.loads(text.read_text(encoding="utf-8") if isinstance(text, Path) else text)
+            record = json.loads(
+                text.read_text(encoding="utf-8") if isinstance(text, Path) else text
+            )
             return _plan_from(record)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise ModelError(source, "", f"is no alignment plan: {error!r}") from error
@@ -199,7 +202,7 @@ def _backward_chain(arcs: list[_Arc], period: float, gap: float) -> list[_Arc] |
 
 
 def _margin(chain: list[_Arc]) -> float:
-    gaps = [late.width - early.span for late, early in zip(chain, chain[1:], strict=False)]
+    gaps = [late.width - early.span for late, early in itertools.pairwise(chain)]
     return min(gaps, default=np.inf) / 2
 
 

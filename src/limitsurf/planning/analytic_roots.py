@@ -59,7 +59,7 @@ def _resolve(function: Callable[[Array], Array], a: float, b: float) -> Array | 
     for degree in _DEGREES:
         nodes = chebyshev.chebpts1(degree + 1)
         values = function(0.5 * (a + b) + 0.5 * (b - a) * nodes)
-        coefficients: Array = chebyshev.chebfit(nodes, values, degree)
+        coefficients = np.asarray(chebyshev.chebfit(nodes, values, degree), dtype=np.float64)
         if np.max(np.abs(coefficients[-3:])) <= _RESOLVED:
             return coefficients
     return None

@@ -7,6 +7,8 @@ vertex change with the direction by at most the part's diameter per radian.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import pdist
@@ -19,6 +21,7 @@ __all__ = ["median_events"]
 Array = NDArray[np.float64]
 
 _SAME = 1e-12  # rad; one event found from both sides of a border of two cells
+
 
 def median_events(edges: Array, half_area: float) -> Array:
     """Return the sorted directions in [0, pi) at which the median meets a vertex.
@@ -41,15 +44,19 @@ def median_events(edges: Array, half_area: float) -> Array:
     borders = np.linspace(0.0, np.pi, cells + 1)
     middles = 0.5 * (borders[1:] + borders[:-1])
     offsets = squeeze_states(edges, middles, half_area)[:, 0]
-    heights = np.outer(np.cos(middles), vertices[:, 1]) - np.outer(np.sin(middles), vertices[:, 0])
-    near = np.abs(heights - offsets[:, None]) <= diameter * (0.5 * np.pi / cells) * (1 + 1e-9)
+    reach = diameter * (0.5 * np.pi / cells) * (1 + 1e-9)
     events = [
         event
-        for cell, i in np.argwhere(near)
-        for event in _events_of_vertex(edges, half_area, vertices, i, borders[cell : cell + 2])
+        for cell, (theta, offset) in enumerate(zip(middles, offsets, strict=True))
+        for i in np.flatnonzero(np.abs(vertices @ _normal(theta) - offset) <= reach)
+        for event in _events_of_vertex(edges, half_area, vertices, int(i), borders[cell : cell + 2])
     ]
     found = np.sort(np.mod(np.asarray(events), np.pi))
     return found[np.diff(found, prepend=found[-1] - np.pi) > _SAME]
+
+
+def _normal(theta: float) -> Array:
+    return np.array([-np.sin(theta), np.cos(theta)])
 
 
 def _events_of_vertex(
@@ -70,8 +77,5 @@ def _events_of_vertex(
         return area
 
     return [
-        root
-        for a, b in zip(knots[:-1], knots[1:], strict=True)
-        if b > a
-        for root in analytic_roots(excess, a, b)
+        root for a, b in itertools.pairwise(knots) if b > a for root in analytic_roots(excess, a, b)
     ]

@@ -7,6 +7,8 @@ it descends the potential U. Both are taken modulo pi, since the line has no dir
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -60,15 +62,15 @@ class TurnFunction:
 
     def potential(self, phi: ArrayLike) -> Array:
         """Return ``U = integral |distance to the median| dA`` [m^3], for unit force per area."""
-        return _column(self.part, phi, 1) * self.part.area**1.5
+        return _column(self.part, phi, 1) * self._unit
 
     def moment(self, phi: ArrayLike) -> Array:
         """Return ``dU/dtheta`` at theta = -phi [m^3]: the moment that turns the part."""
-        return _column(self.part, phi, 2) * self.part.area**1.5
+        return _column(self.part, phi, 2) * self._unit
 
     def curvature(self, phi: ArrayLike) -> Array:
         """Return ``U'' = 2 J - U`` [m^3]; positive at a stable orientation."""
-        return (2 * _column(self.part, phi, 3) - _column(self.part, phi, 1)) * self.part.area**1.5
+        return (2 * _column(self.part, phi, 3) - _column(self.part, phi, 1)) * self._unit
 
     def median(self, phi: float) -> tuple[float, shapely.Geometry]:
         """Return the median's offset from the centroid [m] and its chords in the part's frame [m].
@@ -82,6 +84,11 @@ class TurnFunction:
         reach = 2.0 * self.part.circumradius
         line = shapely.LineString([middle - reach * along, middle + reach * along])
         return offset, shapely.intersection(line, self.part.polygon)
+
+    @property
+    def _unit(self) -> float:
+        """U of a part of area 1 in m^3."""
+        return float(self.part.area**1.5)
 
     @property
     def symmetry_order(self) -> int:
@@ -145,13 +152,13 @@ def turn_function(part: Part) -> TurnFunction:
     events = median_events(edges, _HALF)
 
     def slope(theta: Array) -> Array:
-        values: Array = squeeze_states(edges, np.atleast_1d(theta), _HALF)[:, 2]
+        values: Array = squeeze_states(edges, theta, _HALF)[:, 2]
         return values
 
     knots = np.concatenate([events, events[:1] + np.pi])
     candidates = [
         root
-        for a, b in zip(knots[:-1], knots[1:], strict=True)
+        for a, b in itertools.pairwise(knots)
         if b - a > 1e-13
         for root in analytic_roots(slope, a, b)
     ]
@@ -165,7 +172,9 @@ def turn_function(part: Part) -> TurnFunction:
     )
 
 
-def _sign_changes(slope, points: Array):  # type: ignore[no-untyped-def]
+def _sign_changes(
+    slope: Callable[[Array], Array], points: Array
+) -> tuple[list[float], list[float], bool]:
     """Return where `slope` (of period pi) changes from - to +, from + to -, and if it is zero.
 
     `points` hold every place where the sign may change; between them it is constant, so one test
@@ -179,11 +188,14 @@ def _sign_changes(slope, points: Array):  # type: ignore[no-untyped-def]
     if not clear.any():
         return [], [], True
     tests, signs = tests[clear], np.sign(values[clear])
-    rising, falling = [], []
+    rising: list[float] = []
+    falling: list[float] = []
     for k in range(len(tests)):
         a, b = tests[k - 1] - (np.pi if k == 0 else 0.0), tests[k]
         if signs[k] != signs[k - 1]:
-            root = brentq(lambda theta: float(slope(theta)[0]), a, b, xtol=1e-15, rtol=1e-15)
+            root = brentq(
+                lambda theta: float(slope(np.array([theta]))[0]), a, b, xtol=1e-15, rtol=1e-15
+            )
             (rising if signs[k] > 0 else falling).append(root)
     return rising, falling, False
 

@@ -83,7 +83,7 @@ class Verification:
     def successes(self) -> NDArray[np.bool_]:
         """Whether each run ended at rest, on every line, within the tolerance."""
         at_rest = (self.outcomes == Outcome.REST).all(axis=1)
-        return at_rest & (np.abs(self.errors) <= self.tolerance)
+        return np.asarray(at_rest & (np.abs(self.errors) <= self.tolerance))
 
     @property
     def failures(self) -> NDArray[np.int64]:

@@ -22,6 +22,7 @@ def draw_errors(verification: Verification) -> Any:
     )
     for side in (-1.0, 1.0):
         figure.add_vline(
-            x=side * float(np.degrees(verification.tolerance)), line={"dash": "dash", "color": COLORS[1]}
+            x=side * float(np.degrees(verification.tolerance)),
+            line={"dash": "dash", "color": COLORS[1]},
         )
     return lay_out(figure, x="error of the final orientation [deg]", y="runs")

@@ -41,9 +41,14 @@ def draw_part(part: Part, turn: TurnFunction | None = None) -> Any:
     figure = go.Figure()
     x, y = outline_path(part.polygon).T
     figure.add_scatter(
-        x=x, y=y, fill="toself", fillcolor="rgba(31,95,168,0.15)", mode="lines",
-        line={"color": COLORS[0]}, name=part.name,
-    )  # fmt: skip
+        x=x,
+        y=y,
+        fill="toself",
+        fillcolor="rgba(31,95,168,0.15)",
+        mode="lines",
+        line={"color": COLORS[0]},
+        name=part.name,
+    )
     center = 1e3 * np.asarray(part.centroid)
     figure.add_scatter(
         x=center[:1], y=center[1:], mode="markers", marker={"color": "black"}, name="centre of mass"
@@ -56,9 +61,14 @@ def draw_part(part: Part, turn: TurnFunction | None = None) -> Any:
             for k, phi in enumerate(angles):
                 x, y = _chords(turn, float(phi))
                 figure.add_scatter(
-                    x=x, y=y, mode="lines", line={"dash": dash, "color": color},
-                    name=f"{kind} median", legendgroup=kind, showlegend=k == 0,
-                )  # fmt: skip
+                    x=x,
+                    y=y,
+                    mode="lines",
+                    line={"dash": dash, "color": color},
+                    name=f"{kind} median",
+                    legendgroup=kind,
+                    showlegend=k == 0,
+                )
     figure.update_xaxes(constrain="domain")
     figure.update_yaxes(scaleanchor="x")
     return lay_out(figure, x="x [mm]", y="y [mm]")

@@ -68,7 +68,9 @@ def animate_runs(verification: Verification, *, runs: int = 6, frames: int = 60)
 def _show(line: int, lines: int) -> list[dict[str, Any]]:
     """Return the changes that show one line's pixels and hide those of the others."""
     return [
-        {"type": kind, "visible": k == line} for k in range(lines) for kind in ("heatmap", "scatter")
+        {"type": kind, "visible": k == line}
+        for k in range(lines)
+        for kind in ("heatmap", "scatter")
     ]
 
 
@@ -100,10 +102,15 @@ def _parts(verification: Verification, shown: list[int], poses: list[Array]) -> 
         ending = "" if verification.successes[run] else " (failed)"
         traces.append(
             go.Scatter(
-                x=x, y=y, mode="lines", fill="toself", opacity=0.55, name=f"{run}{ending}",
+                x=x,
+                y=y,
+                mode="lines",
+                fill="toself",
+                opacity=0.55,
+                name=f"{run}{ending}",
                 line={"color": color, "width": 2},
             )
-        )  # fmt: skip
+        )
     return traces
 
 
@@ -118,18 +125,32 @@ def _ground(verification: Verification, visible: int) -> list[Any]:
         reach = 500 * np.hypot(array.width, array.height) * np.array([-1.0, 1.0])
         traces += [
             go.Heatmap(
-                x=centers[0, :, 0], y=centers[:, 0, 1], z=_pushes(activation), zmin=-0.5, zmax=3.5,
-                colorscale=_direction_scale(), opacity=0.6, visible=k == visible,
+                x=centers[0, :, 0],
+                y=centers[:, 0, 1],
+                z=_pushes(activation),
+                zmin=-0.5,
+                zmax=3.5,
+                colorscale=_direction_scale(),
+                opacity=0.6,
+                visible=k == visible,
                 colorbar={
-                    "title": "push", "tickvals": [0, 1, 2, 3], "ticktext": ["+x", "-x", "+y", "-y"],
-                    "x": -0.16, "thickness": 14, "len": 0.4,
+                    "title": "push",
+                    "tickvals": [0, 1, 2, 3],
+                    "ticktext": ["+x", "-x", "+y", "-y"],
+                    "x": -0.16,
+                    "thickness": 14,
+                    "len": 0.4,
                 },
             ),
             go.Scatter(
-                x=reach * np.cos(angle), y=reach * np.sin(angle), mode="lines", showlegend=False,
-                line={"color": "black", "dash": "dash"}, visible=k == visible,
+                x=reach * np.cos(angle),
+                y=reach * np.sin(angle),
+                mode="lines",
+                showlegend=False,
+                line={"color": "black", "dash": "dash"},
+                visible=k == visible,
             ),
-        ]  # fmt: skip
+        ]
     return traces
 
 
@@ -162,14 +183,23 @@ def _add_controls(figure: Any, labels: list[str]) -> None:
     figure.update_layout(
         updatemenus=[
             {
-                "type": "buttons", "direction": "left", "buttons": [play, pause],
-                "x": 0.0, "y": -0.13, "xanchor": "left", "yanchor": "top", "showactive": False,
+                "type": "buttons",
+                "direction": "left",
+                "buttons": [play, pause],
+                "x": 0.0,
+                "y": -0.13,
+                "xanchor": "left",
+                "yanchor": "top",
+                "showactive": False,
             }
         ],
         sliders=[
             {
-                "steps": steps, "x": 0.18, "len": 0.82, "y": -0.09,
+                "steps": steps,
+                "x": 0.18,
+                "len": 0.82,
+                "y": -0.09,
                 "currentvalue": {"prefix": "line and time "},
             }
         ],
-    )  # fmt: skip
+    )

@@ -28,9 +28,12 @@ def draw_squeeze_function(squeeze: SqueezeFunction) -> Any:
         x=x, y=y, mode="lines", line={"color": COLORS[0], "width": 3}, name="squeeze function s"
     )
     figure.add_scatter(
-        x=[0, 180], y=[0, 180], mode="lines", line={"color": "#bbbbbb", "dash": "dot"},
+        x=[0, 180],
+        y=[0, 180],
+        mode="lines",
+        line={"color": "#bbbbbb", "dash": "dot"},
         name="unchanged",
-    )  # fmt: skip
+    )
     figure.update_xaxes(range=[0, 180], dtick=30)
     figure.update_yaxes(range=[-3, 183], dtick=30)
     return lay_out(figure, x="orientation before [deg]", y="orientation after [deg]")

@@ -22,20 +22,29 @@ def draw_turn_function(turn: TurnFunction) -> Any:
     degrees = np.degrees(phi)
     figure = go.Figure()
     figure.add_scatter(
-        x=degrees, y=turn(phi), mode="lines", name="turn function t",
+        x=degrees,
+        y=turn(phi),
+        mode="lines",
+        name="turn function t",
         line={"shape": "hv", "color": "#bbbbbb"},
-    )  # fmt: skip
+    )
     figure.add_scatter(
-        x=degrees, y=moment / scale, mode="lines", name="moment / largest moment",
+        x=degrees,
+        y=moment / scale,
+        mode="lines",
+        name="moment / largest moment",
         line={"color": COLORS[0]},
-    )  # fmt: skip
+    )
     for name, angles, color, symbol in (
         ("stable", turn.stable, COLORS[2], "circle"),
         ("unstable", turn.unstable, COLORS[1], "circle-open"),
     ):
         figure.add_scatter(
-            x=np.degrees(angles), y=np.zeros(len(angles)), mode="markers", name=name,
+            x=np.degrees(angles),
+            y=np.zeros(len(angles)),
+            mode="markers",
+            name=name,
             marker={"color": color, "symbol": symbol, "size": 11},
-        )  # fmt: skip
+        )
     figure.update_xaxes(range=[0, 180], dtick=30)
     return lay_out(figure, x="orientation phi [deg]", y="turn function t [1]")

@@ -1,1 +1,0 @@
-"""Contacts between a part and what carries it."""

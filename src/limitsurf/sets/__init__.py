@@ -1,1 +1,0 @@
-"""Convex sets in load space."""

@@ -1,0 +1,90 @@
+"""Pictures show the numbers of the objects, with units on their axes."""
+
+import numpy as np
+import pytest
+
+from limitsurf import plot
+from limitsurf.geometry.part import Part
+from limitsurf.planning.alignment import plan_alignment
+from limitsurf.planning.turn_function import turn_function
+from limitsurf.planning.verification import verify_alignment
+
+
+@pytest.fixture(scope="module")
+def turn():
+    return turn_function(Part.from_file("paper_t"))
+
+
+@pytest.fixture(scope="module")
+def verification(paper_t, array64):
+    return verify_alignment(plan_alignment(paper_t), paper_t, array64, samples=3, seed=2)
+
+
+def trace(figure, name):
+    return next(t for t in figure.data if t.name == name)
+
+
+def labels(figure):
+    return figure.layout.xaxis.title.text, figure.layout.yaxis.title.text
+
+
+def test_part(turn):
+    figure = plot.draw_part(turn.part, turn)
+    x = np.array(trace(figure, "paper_t").x)
+    assert np.nanmax(x) - np.nanmin(x) == pytest.approx(4.8)
+    assert sum(t.name == "stable median" for t in figure.data) == 2
+    assert labels(figure) == ("x [mm]", "y [mm]")
+
+
+def test_turn_function(turn):
+    figure = plot.draw_turn_function(turn)
+    assert np.array(trace(figure, "stable").x) == pytest.approx(np.degrees(turn.stable))
+    moment = trace(figure, "moment / largest moment")
+    assert np.max(np.abs(moment.y)) == pytest.approx(1.0)
+    assert labels(figure) == ("orientation phi [deg]", "turn function t [1]")
+
+
+def test_squeeze_function_covers_all_orientations(turn):
+    plan = plan_alignment(turn.part)
+    steps = trace(plot.draw_squeeze_function(plan.squeeze), "squeeze function s")
+    x = np.array(steps.x, dtype=float).reshape(-1, 3)
+    assert np.sum(x[:, 1] - x[:, 0]) == pytest.approx(180.0)
+    for (a, b, _), (y, _, _) in zip(x, np.array(steps.y).reshape(-1, 3), strict=True):
+        assert np.degrees(plan.squeeze(np.radians((a + b) / 2))) == pytest.approx(y)
+
+
+def test_plan_ends_in_one_orientation(turn):
+    plan = plan_alignment(turn.part)
+    paths = np.array(plot.draw_plan(plan).data[0].y).reshape(-1, 4)
+    assert paths[:, 2] == pytest.approx(np.full(180, np.degrees(plan.final)))
+
+
+def test_errors(verification):
+    figure = plot.draw_errors(verification)
+    assert np.array(figure.data[0].x) == pytest.approx(np.degrees(verification.errors))
+    assert "[deg]" in labels(figure)[0]
+
+
+def test_animation_moves_the_part_from_start_to_end(verification):
+    figure = plot.animate_runs(verification, runs=2, frames=10)
+    assert len(figure.frames) == 20
+    for k, frame in ((0, figure.frames[0]), (-1, figure.frames[-1])):
+        for run in (0, 1):
+            outline = frame.data[4 + run]
+            shape = verification.part.at(verification.poses[run, k])
+            bounds = np.array(shape.bounds) * 1e3
+            assert np.nanmin(np.array(outline.x)) == pytest.approx(bounds[0], abs=2e-2)
+            assert np.nanmax(np.array(outline.y)) == pytest.approx(bounds[3], abs=2e-2)
+    shown = [[trace.visible for trace in frame.data[:4]] for frame in figure.frames]
+    assert shown[0] == [True, True, False, False]
+    assert shown[-1] == [False, False, True, True]
+    assert [t.type for t in figure.frames[0].data[:4]] == ["heatmap", "scatter"] * 2
+    assert len(figure.layout.sliders[0].steps) == 20
+    assert [b.label for b in figure.layout.updatemenus[0].buttons] == ["Play", "Pause"]
+
+
+def test_animation_colours_pixels_by_their_push(verification):
+    figure = plot.animate_runs(verification, runs=1, frames=2)
+    pushes = np.array(figure.data[0].z)  # line at 0 degrees: down above it, up below
+    assert np.all(pushes[32:] == 3)
+    assert np.all(pushes[:32] == 2)
