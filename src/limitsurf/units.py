@@ -37,8 +37,8 @@ def parse_quantity(value: str | float, unit: str, *, name: str = "value") -> flo
 
     Examples
     --------
-    >>> parse_quantity("50 um", "m")
-    5e-05
+    >>> parse_quantity("80 g/m^2", "kg/m^2")
+    0.08
     """
     if isinstance(value, str):
         number = _parse_text(value, unit, name)

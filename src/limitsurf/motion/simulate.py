@@ -113,6 +113,14 @@ def simulate(
         The active tips cannot carry the part; names the voltage that would lift it.
     InputError
         Arguments that are not finite or not positive; a start off the array.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.activation import squeeze_activation
+    >>> from limitsurf.actuators.actuator_array import load_array
+    >>> drive = squeeze_activation(load_array("resonator64"), 0.0)
+    >>> simulate(Part.from_file("paper_t"), drive, (0.0, 1e-3, 1.0)).outcome.name
+    'REST'
     """
     array = drive.array
     check_lift(part, array)

@@ -197,6 +197,14 @@ def verify_alignment(
         No samples, or an array too small for the part and its start offsets.
     PartTooHeavy
         The array cannot lift the part at its voltage.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.actuator_array import load_array
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> part = Part.from_file("paper_t")
+    >>> verify_alignment(plan_alignment(part), part, load_array("resonator64"), samples=10)
+    Verification(10 of 10 runs aligned, 95 % interval 72.2 to 100.0 %)
     """
     if samples <= 0:
         raise InputError("samples", "must be at least 1", value=samples)
