@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.lattice import covered_sites
+from limitsurf.kernels.lattice import Lattice, covered_sites, new_cover
 
 PITCH, ORIGIN = 0.1, (-1.55, -1.45)
 ROWS, COLUMNS = 30, 32
@@ -13,16 +13,15 @@ ROWS, COLUMNS = 30, 32
 
 def covered(part, pose, width, active=None):
     active = np.ones((ROWS, COLUMNS), bool) if active is None else active
-    slot = np.full(active.shape, -1, np.int32)
-    rows, cols = np.empty(active.size, np.int32), np.empty(active.size, np.int32)
-    share = np.empty(active.size)
+    lattice, cover = Lattice(*ORIGIN, PITCH, active, width), new_cover(active)
     placed = Part(part.at(pose))
     edges = placed.edges + np.tile(placed.centroid, 2)
-    n = covered_sites(edges, *ORIGIN, PITCH, active, width, slot, rows, cols, share)
-    assert np.all(slot == -1)
+    n = covered_sites(edges, lattice, cover)
+    assert np.all(cover.slot == -1)
+    rows, columns = cover.rows[:n], cover.columns[:n]
+    assert len(set(zip(rows, columns, strict=True))) == n
     table = np.zeros(active.shape)
-    table[rows[:n], cols[:n]] = share[:n]
-    assert len(set(zip(rows[:n], cols[:n], strict=True))) == n
+    table[rows, columns] = cover.share[:n]
     return table
 
 

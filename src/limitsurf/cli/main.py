@@ -18,6 +18,7 @@ app = typer.Typer(
     name="limitsurf",
     no_args_is_help=True,
     add_completion=False,
+    pretty_exceptions_enable=False,
 )
 app.command()(align)
 

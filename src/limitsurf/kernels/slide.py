@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from limitsurf.kernels.compile import Bools, Floats, Ints, compiled
+from limitsurf.kernels.compile import Floats, compiled
 from limitsurf.kernels.contact_sum import solve_contact_sum
-from limitsurf.kernels.lattice import covered_sites
+from limitsurf.kernels.lattice import Cover, Lattice, covered_sites, new_cover
 
 __all__ = ["LEFT_ARRAY", "NOT_LIFTED", "REST", "TIME_LIMIT", "Body", "Ground", "slide"]
 
@@ -42,21 +42,28 @@ class Body(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """The array: a lattice of sites, which run, where they push, and what a tip does.
+    """The array: its lattice of sites, where they push, and what a tip does.
 
     `push` and `grip` are the mean push and the radius of the friction disk of a tip, per normal
     force; `lift` is the largest normal force a tip can carry.
     """
 
-    origin_x: float
-    origin_y: float
-    pitch: float
-    active: Bools
+    lattice: Lattice
     directions: Floats
-    tip_width: float
     push: float
     grip: float
     lift: float
+
+
+class Step(NamedTuple):
+    """What a step computes: loads of the contacts, tips' scaled positions and friction radii."""
+
+    edges: Floats
+    x: Floats
+    y: Floats
+    radius: Floats
+    load: Floats
+    guess: Floats
 
 
 @compiled
@@ -70,12 +77,12 @@ def _place(edges: Floats, pose: Floats, out: Floats) -> None:
 
 
 @compiled
-def _on_array(edges: Floats, ground: Ground) -> bool:
+def _on_array(edges: Floats, lattice: Lattice) -> bool:
     """Return whether all vertices lie over the cells of the sites."""
-    half = 0.5 * ground.pitch
-    rows, columns = ground.active.shape
-    left, bottom = ground.origin_x - half, ground.origin_y - half
-    right, top = left + columns * ground.pitch, bottom + rows * ground.pitch
+    half = 0.5 * lattice.pitch
+    rows, columns = lattice.active.shape
+    left, bottom = lattice.origin_x - half, lattice.origin_y - half
+    right, top = left + columns * lattice.pitch, bottom + rows * lattice.pitch
     for i in range(edges.shape[0]):
         if not (left <= edges[i, 0] <= right and bottom <= edges[i, 1] <= top):
             return False
@@ -133,70 +140,88 @@ def slide(
     heaviest : float
         Largest normal force on a tip.
     """
-    sites = ground.active.shape[0] * ground.active.shape[1]
-    slot = np.full(ground.active.shape, -1, np.int32)
-    rows, columns = np.empty(sites, np.int32), np.empty(sites, np.int32)
-    share, x, y = np.empty(sites), np.empty(sites), np.empty(sites)
-    edges = np.empty_like(body.edges)
-    quadratic = body.mass / dt + body.drag
-    rho = math.sqrt(quadratic[2] / quadratic[0])
-    guess, load, scaled = np.zeros(3), np.zeros(3), np.empty(3)
-    worst = heaviest = 0.0
-    written = 0
-    status = TIME_LIMIT
-    step = 0
-    count = 0
-    bound = 0.0
+    cover = new_cover(ground.lattice.active)
+    sites = cover.share.size
+    work = Step(
+        np.empty_like(body.edges),
+        np.empty(sites),
+        np.empty(sites),
+        np.empty(sites),
+        np.zeros(3),
+        np.zeros(3),
+    )
+    worst = heaviest = bound = 0.0
+    step = written = 0
     while True:
-        _place(body.edges, pose, edges)
-        if not _on_array(edges, ground):
-            status = LEFT_ARRAY
-        else:
-            count = covered_sites(
-                edges,
-                ground.origin_x,
-                ground.origin_y,
-                ground.pitch,
-                ground.active,
-                ground.tip_width,
-                slot,
-                rows,
-                columns,
-                share,
-            )
-            normal = body.weight / share[:count].sum() if count > 0 else np.inf
-            heaviest = max(heaviest, normal)
-            if normal > ground.lift:
-                status = NOT_LIFTED
+        status, count, normal = _find_tips(body, ground, pose, work.edges, cover)
+        heaviest = max(heaviest, normal)
         if status == TIME_LIMIT and step < steps:
-            _sum_contacts(ground, pose, rho, normal, rows, columns, share, count, x, y, load)
-            resting = True
-            for k in range(3):
-                inertial = body.mass[k] * twist[k] / dt
-                resting = resting and inertial == 0.0
-                scaled[k] = (load[k] + inertial) / (rho if k == 2 else 1.0)
-            solution, friction, bound, sticks, _ = solve_contact_sum(
-                x[:count], y[:count], share[:count], scaled, guess, tol
-            )
+            resting, bound = _solve(body, ground, pose, twist, dt, tol, normal, count, cover, work)
             worst = max(worst, bound / body.weight)
-            guess[:] = solution
-            for k in range(3):
-                twist[k] = solution[k] / (quadratic[0] * (rho if k == 2 else 1.0))
-                load[k] += friction[k] * (rho if k == 2 else 1.0)
-            if (sticks and resting) or _slow(body, twist, load, rest_speed):
+            if resting or _slow(body, twist, work.load, rest_speed):
                 status = REST
-        if status != TIME_LIMIT or step == steps or step % stride == 0:
-            frames[written, 0] = step * dt
-            frames[written, 1:4] = pose
-            frames[written, 4:7] = twist
-            frames[written, 7:10] = load
-            frames[written, 10] = bound
-            frames[written, 11] = count
+        over = status != TIME_LIMIT or step == steps
+        if over or step % stride == 0:
+            frame = frames[written]
+            frame[0] = step * dt
+            frame[1:4] = pose
+            frame[4:7] = twist
+            frame[7:10] = work.load
+            frame[10] = bound
+            frame[11] = count
             written += 1
-        if status != TIME_LIMIT or step == steps:
+        if over:
             return status, step, written, worst, heaviest
         pose += dt * twist
         step += 1
+
+
+@compiled
+def _find_tips(
+    body: Body, ground: Ground, pose: Floats, edges: Floats, cover: Cover
+) -> tuple[int, int, float]:
+    """Return status, number of tips under the part, and the weight on a tip of share 1."""
+    _place(body.edges, pose, edges)
+    if not _on_array(edges, ground.lattice):
+        return LEFT_ARRAY, 0, 0.0
+    count = covered_sites(edges, ground.lattice, cover)
+    normal = body.weight / cover.share[:count].sum() if count > 0 else np.inf
+    return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, count, normal
+
+
+@compiled
+def _solve(
+    body: Body,
+    ground: Ground,
+    pose: Floats,
+    twist: Floats,
+    dt: float,
+    tol: float,
+    normal: float,
+    count: int,
+    cover: Cover,
+    work: Step,
+) -> tuple[bool, float]:
+    """Overwrite the twist by that of the implicit step; return whether it rests, and the bound.
+
+    Scaled by rho, the metric's radius of gyration, and by the first entry of the quadratic term,
+    the metric is the identity.
+    """
+    quadratic = body.mass / dt + body.drag
+    rho = math.sqrt(quadratic[2] / quadratic[0])
+    _sum_contacts(ground, pose, rho, normal, count, cover, work)
+    momentum = body.mass * twist / dt
+    scaled = work.load + momentum
+    scaled[2] /= rho
+    solution, friction, bound, sticks, _ = solve_contact_sum(
+        work.x[:count], work.y[:count], work.radius[:count], scaled, work.guess, tol
+    )
+    work.guess[:] = solution
+    twist[:] = solution / quadratic[0]
+    twist[2] /= rho
+    friction[2] *= rho
+    work.load[:] += friction
+    return sticks and not np.any(momentum), bound
 
 
 @compiled
@@ -205,24 +230,22 @@ def _sum_contacts(
     pose: Floats,
     rho: float,
     normal: float,
-    rows: Ints,
-    columns: Ints,
-    share: Floats,
     count: int,
-    x: Floats,
-    y: Floats,
-    load: Floats,
+    cover: Cover,
+    work: Step,
 ) -> None:
-    """Set scaled positions, turn shares into friction radii, and sum the pushes to a load."""
-    load[:] = 0.0
+    """Set the tips' scaled positions and friction radii, and sum their pushes to a load."""
+    lattice = ground.lattice
+    work.load[:] = 0.0
     for i in range(count):
-        rx = ground.origin_x + ground.pitch * columns[i] - pose[0]
-        ry = ground.origin_y + ground.pitch * rows[i] - pose[1]
-        carried = normal * share[i]
-        fx = ground.push * carried * ground.directions[rows[i], columns[i], 0]
-        fy = ground.push * carried * ground.directions[rows[i], columns[i], 1]
-        load[0] += fx
-        load[1] += fy
-        load[2] += rx * fy - ry * fx
-        x[i], y[i] = rx / rho, ry / rho
-        share[i] = ground.grip * carried
+        r, c = cover.rows[i], cover.columns[i]
+        rx = lattice.origin_x + lattice.pitch * c - pose[0]
+        ry = lattice.origin_y + lattice.pitch * r - pose[1]
+        carried = normal * cover.share[i]
+        fx = ground.push * carried * ground.directions[r, c, 0]
+        fy = ground.push * carried * ground.directions[r, c, 1]
+        work.load[0] += fx
+        work.load[1] += fy
+        work.load[2] += rx * fy - ry * fx
+        work.x[i], work.y[i] = rx / rho, ry / rho
+        work.radius[i] = ground.grip * carried

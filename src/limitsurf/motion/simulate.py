@@ -13,6 +13,7 @@ from limitsurf.actuators.activation import Activation
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
+from limitsurf.kernels.lattice import Lattice
 from limitsurf.kernels.slide import Body, Ground, slide
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.trajectory import Outcome, Trajectory
@@ -181,12 +182,10 @@ def _body(part: Part, array: ActuatorArray, mode: Mode) -> Body:
 def _ground(drive: Activation) -> Ground:
     array, pixel = drive.array, drive.array.pixel
     return Ground(
-        origin_x=array.first_site[0],
-        origin_y=array.first_site[1],
-        pitch=array.site_pitch,
-        active=drive.active,
+        lattice=Lattice(
+            *array.first_site, array.site_pitch, drive.active, tip_width=pixel.tip_width
+        ),
         directions=array.site_directions,
-        tip_width=pixel.tip_width,
         push=pixel.friction * pixel.offset_fraction,
         grip=pixel.friction * pixel.residual_fraction,
         lift=pixel.vertical_force(array.voltage),
