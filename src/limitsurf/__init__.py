@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from limitsurf.actuators.activation import squeeze_activation as squeeze_activation
     from limitsurf.actuators.actuator_array import ActuatorArray as ActuatorArray
     from limitsurf.actuators.actuator_array import load_array as load_array
+    from limitsurf.contacts.coulomb import contact_map as contact_map
+    from limitsurf.contacts.coulomb import coulomb_contact as coulomb_contact
+    from limitsurf.contacts.coulomb import polygonal_contact as polygonal_contact
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
@@ -25,6 +28,16 @@ if TYPE_CHECKING:
     from limitsurf.planning.turn_function import turn_function as turn_function
     from limitsurf.planning.verification import Verification as Verification
     from limitsurf.planning.verification import verify_alignment as verify_alignment
+    from limitsurf.sets.convex_set import ConvexSet as ConvexSet
+    from limitsurf.sets.ellipsoid import Ellipsoid as Ellipsoid
+    from limitsurf.sets.h_polytope import HPolytope as HPolytope
+    from limitsurf.sets.linear_image import LinearImage as LinearImage
+    from limitsurf.sets.linear_image import transport as transport
+    from limitsurf.sets.minkowski_sum import MinkowskiSum as MinkowskiSum
+    from limitsurf.sets.polynomial_set import PolynomialSet as PolynomialSet
+    from limitsurf.sets.projection import Projection as Projection
+    from limitsurf.sets.v_polytope import VPolytope as VPolytope
+    from limitsurf.sets.zonotope import Zonotope as Zonotope
 
 __version__ = "0.1.0"
 
@@ -32,16 +45,29 @@ _HOME = {
     "Activation": "actuators.activation",
     "ActuatorArray": "actuators.actuator_array",
     "AlignmentPlan": "planning.alignment",
+    "ConvexSet": "sets.convex_set",
+    "Ellipsoid": "sets.ellipsoid",
+    "HPolytope": "sets.h_polytope",
+    "LinearImage": "sets.linear_image",
+    "MinkowskiSum": "sets.minkowski_sum",
     "Part": "geometry.part",
+    "PolynomialSet": "sets.polynomial_set",
+    "Projection": "sets.projection",
     "SqueezeFunction": "planning.squeeze_function",
     "Trajectory": "motion.trajectory",
     "TurnFunction": "planning.turn_function",
+    "VPolytope": "sets.v_polytope",
     "Verification": "planning.verification",
+    "Zonotope": "sets.zonotope",
+    "contact_map": "contacts.coulomb",
+    "coulomb_contact": "contacts.coulomb",
     "load_array": "actuators.actuator_array",
     "plan_alignment": "planning.alignment",
+    "polygonal_contact": "contacts.coulomb",
     "simulate": "motion.simulate",
     "squeeze_activation": "actuators.activation",
     "squeeze_function": "planning.squeeze_function",
+    "transport": "sets.linear_image",
     "turn_function": "planning.turn_function",
     "verify_alignment": "planning.verification",
 }

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from limitsurf import plot
+from limitsurf.contacts.coulomb import coulomb_contact
+from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.turn_function import turn_function
 from limitsurf.planning.verification import verify_alignment
+from limitsurf.sets.minkowski_sum import MinkowskiSum
 
 
 @pytest.fixture(scope="module")
@@ -88,3 +91,19 @@ def test_animation_colours_pixels_by_their_push(verification):
     pushes = np.array(figure.data[0].z)  # line at 0 degrees: down above it, up below
     assert np.all(pushes[32:] == 3)
     assert np.all(pushes[:32] == 2)
+
+
+def test_the_bar_of_figures_8_and_9():
+    """Two disks tilted by 45 degrees, and their sum: from -2 to 2 along every axis."""
+    contacts = [coulomb_contact([x, 0.0], 1.0) for x in (1.0, -1.0)]
+    figure = plot.draw_limit_surface(*contacts, names=("at (1, 0)", "at (-1, 0)"))
+    for sheet, slope in zip(figure.data, (1.0, -1.0), strict=True):
+        assert np.array(sheet.z) == pytest.approx(slope * np.array(sheet.y), abs=1e-9)
+    (surface,) = plot.draw_limit_surface(MinkowskiSum(*contacts)).data
+    for axis in (surface.x, surface.y, surface.z):
+        assert np.ptp(axis) == pytest.approx(4.0, abs=0.02)
+    titles = plot.draw_limit_surface(contacts[0]).layout.scene
+    assert "[N]" in titles.xaxis.title.text
+    assert "[N m]" in titles.zaxis.title.text
+    with pytest.raises(InputError, match="surfaces"):
+        plot.draw_limit_surface()

@@ -1,0 +1,1 @@
+"""Contacts between a part and what carries it."""

@@ -1,0 +1,1 @@
+"""Convex sets in load space, and in any space of a few dimensions."""

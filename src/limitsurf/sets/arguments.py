@@ -1,0 +1,95 @@
+"""Check what users hand to sets: shapes, finite numbers, metrics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from limitsurf.errors import InputError
+
+__all__ = ["Metric", "as_array", "as_points", "read_metric"]
+
+Array = NDArray[np.float64]
+
+
+def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
+    """Return a read-only float array of the given shape; None leaves a length open.
+
+    Raises
+    ------
+    InputError
+        No numbers, not finite, or another shape; names the argument and both shapes.
+    """
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(name, "is no array of numbers", remedy="check its entries") from error
+    if array.size == 0 and array.ndim < len(shape):
+        array = array.reshape([length or 0 for length in shape])
+    fits = array.ndim == len(shape) and all(
+        length is None or length == found for length, found in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        wanted = tuple("any" if length is None else length for length in shape)
+        raise InputError(name, f"has shape {array.shape}, not {wanted}".replace("'", ""))
+    if not np.isfinite(array).all():
+        raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
+    array.setflags(write=False)
+    return array
+
+
+def as_points(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ...]]:
+    """Return points (..., dim) as rows (k, dim), with the leading shape."""
+    try:
+        points = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(name, "is no array of numbers", remedy="check its entries") from error
+    if points.ndim == 0 or points.shape[-1] != dim:
+        raise InputError(name, f"has shape {points.shape}, not (..., {dim})")
+    if not np.isfinite(points).all():
+        raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
+    return np.ascontiguousarray(points.reshape(-1, dim)), points.shape[:-1]
+
+
+@dataclass(frozen=True, eq=False)
+class Metric:
+    """A metric W = C'C with C upper triangular; `identity` if W is the identity."""
+
+    W: Array
+    C: Array
+    identity: bool
+
+    def into(self, points: Array) -> Array:
+        """Return ``C x`` for rows x: coordinates in which the metric is the identity."""
+        return points if self.identity else points @ self.C.T
+
+    def back(self, points: Array) -> Array:
+        """Return ``C^-1 x`` for rows x."""
+        if self.identity:
+            return points
+        return np.asarray(np.linalg.solve(self.C, points.T).T, dtype=np.float64)
+
+
+def read_metric(metric: ArrayLike | None, dim: int) -> Metric:
+    """Return a metric given as a matrix, as its diagonal, or None for the identity.
+
+    Raises
+    ------
+    InputError
+        Wrong shape, not symmetric, or not positive definite.
+    """
+    if metric is None:
+        return Metric(np.eye(dim), np.eye(dim), identity=True)
+    matrix = np.asarray(metric, dtype=np.float64)
+    matrix = np.diag(matrix) if matrix.ndim == 1 else matrix
+    if matrix.shape != (dim, dim):
+        raise InputError("metric", f"has shape {np.shape(metric)}, not ({dim},) or ({dim}, {dim})")
+    if not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T, rtol=1e-12, atol=0.0):
+        raise InputError("metric", "must be finite and symmetric")
+    try:
+        factor = np.asarray(np.linalg.cholesky(matrix).T, dtype=np.float64)
+    except np.linalg.LinAlgError as error:
+        raise InputError("metric", "is not positive definite") from error
+    return Metric(matrix, factor, identity=bool(np.array_equal(matrix, np.eye(dim))))

@@ -1,0 +1,192 @@
+"""Polytopes given by their facets."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+
+from limitsurf.conic.form import Cone, ConicForm
+from limitsurf.errors import InputError
+from limitsurf.kernels.dual_active_set import closest_on_facets
+from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.hulls import chebyshev_center, is_bounded, vertices_of
+from limitsurf.sets.projection import Status
+from limitsurf.sets.v_polytope import VPolytope
+
+__all__ = ["HPolytope"]
+
+Array = NDArray[np.float64]
+
+_MANY = 100  # facets from which climbing over vertices beats scanning facets
+_EPS = float(np.finfo(np.float64).eps)
+
+
+class HPolytope(ConvexSet):
+    """The set ``{x : A x <= b}``; must not be empty.
+
+    Parameters
+    ----------
+    A : (m, n) float
+        Outer normals of the facets, one a row, of any length but zero.
+    b : (m,) float
+        Offsets.
+
+    Raises
+    ------
+    InputError
+        The polytope is empty; or it is unbounded where a bounded one is needed (`to_v`,
+        `support`, `face`).
+
+    Examples
+    --------
+    >>> square = HPolytope([[1, 0], [-1, 0], [0, 1], [0, -1]], [1, 1, 1, 1])
+    >>> square.project([3.0, 0.5]).point
+    array([1. , 0.5])
+    """
+
+    def __init__(self, A: ArrayLike, b: ArrayLike) -> None:
+        self._A = as_array("A", A, None, None)
+        self._b = as_array("b", b, len(self._A))
+        if self._A.size == 0:
+            raise InputError("A", "has no rows", remedy="give at least one facet")
+        if not np.linalg.norm(self._A, axis=1).all():
+            raise InputError("A", "has a zero row", remedy="drop it")
+        ball = chebyshev_center(self._A, self._b)
+        if ball is None:
+            raise InputError("A, b", "describe an empty polytope", remedy="check signs of b")
+        self._ball = ball
+
+    @property
+    def A(self) -> Array:  # noqa: N802
+        """Outer normals."""
+        return self._A
+
+    @property
+    def b(self) -> Array:
+        """Offsets."""
+        return self._b
+
+    @property
+    def dim(self) -> int:
+        """Dimension n of the space."""
+        return int(self._A.shape[1])
+
+    @cached_property
+    def bounded(self) -> bool:
+        """Whether the polytope is bounded."""
+        return is_bounded(self._A)
+
+    def conic_form(self) -> ConicForm:
+        """Return ``{x : b - A x >= 0}``."""
+        n = self.dim
+        A = sparse.csc_matrix(-self._A)
+        return ConicForm(np.eye(n), np.zeros(n), A, self._b, (Cone("nonnegative", len(self._b)),))
+
+    @cached_property
+    def _by_vertices(self) -> VPolytope:
+        if not self.bounded:
+            raise InputError("A", "describes an unbounded polytope", remedy="add facets")
+        return VPolytope(vertices_of(self._A, self._b, *self._ball))
+
+    def to_v(self) -> VPolytope:
+        """Return the polytope by its vertices."""
+        return self._by_vertices
+
+    def face(self, d: ArrayLike, tol: float = 1e-9) -> ConvexSet:
+        """Return the face with outer normal d, by its vertices."""
+        return self.to_v().face(d, tol)
+
+    def extreme_points(self) -> Array | None:
+        """Return the vertices, None if the polytope is unbounded."""
+        return self.to_v().vertices if self.bounded else None
+
+    def linear_image(self, matrix: Array, offset: Array) -> ConvexSet | None:
+        """Return ``{M x + c : x in S}`` by its vertices."""
+        return self.to_v().linear_image(matrix, offset) if self.bounded else None
+
+    def _support_points(self, directions: Array) -> Array:
+        return self.to_v().support_point(directions)
+
+    @cached_property
+    def _flat(self) -> bool:
+        """Whether the largest ball is small beside the polytope: facets locate it badly then."""
+        if not (self.bounded and np.isfinite(self._ball[1])):
+            return False
+        return bool(self._ball[1] < 1e-3 * np.ptp(self.to_v().vertices, axis=0).max())
+
+    def _project(self, points: Array, metric: Metric) -> Rows:
+        if self.dim > 3:
+            return super()._project(points, metric)
+        if self._flat or (len(self._b) > _MANY and self.bounded):
+            return self.to_v()._project(points, metric)
+        normals = self._A if metric.identity else np.linalg.solve(metric.C.T, self._A.T).T
+        lengths = np.linalg.norm(normals, axis=1)
+        scaled = metric.into(points)
+        closest, active, multipliers, count, failed = closest_on_facets(
+            _lifted(scaled), _lifted(normals / lengths[:, None]), self._b / lengths
+        )
+        inside = (active[:, 0] < 0) & (failed == 0)
+        bound = _facet_bounds(
+            scaled,
+            closest[:, : self.dim],
+            normals / lengths[:, None],
+            self._b / lengths,
+            active,
+            multipliers,
+        )
+        status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
+        status = np.where(failed != 0, Status.FAILED, status)
+        point = np.where(inside[:, None], points, metric.back(closest[:, : self.dim]))
+        return Rows(
+            point,
+            np.where(inside, 0.0, bound),
+            count.astype(np.int64),
+            status.astype(np.int64),
+        )
+
+    def _distances(self, points: Array, metric: Metric) -> Array:
+        if self.dim > 3:
+            return super()._distances(points, metric)
+        rows = self._project(points, metric)
+        return np.asarray(np.linalg.norm(metric.into(points - rows.point), axis=1))
+
+    def __repr__(self) -> str:
+        """Return the number of facets."""
+        return f"HPolytope({len(self._b)} facets in {self.dim} dimensions)"
+
+
+def _lifted(points: Array) -> Array:
+    """Return points in up to three dimensions with zeros for those that are missing."""
+    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
+
+
+def _facet_bounds(
+    points: Array,
+    closest: Array,
+    normals: Array,
+    offsets: Array,
+    active: NDArray[np.int32],
+    multipliers: Array,
+) -> Array:
+    """Return certified errors from the optimality conditions on the active facets.
+
+    With ``N x = b_N`` on the active facets and ``p - x = N' lambda``, lambda >= 0, x is exact.
+    A residual r of the first moves x by at most ``|r| / sigma_min(N)``, one of the second by its
+    length.
+    """
+    used = (active >= 0)[..., None]
+    N = np.where(used, normals[active], 0.0)
+    r = np.where(active >= 0, offsets[active] - np.einsum("kij,kj->ki", N, closest), 0.0)
+    stationarity = points - closest - np.einsum("kij,ki->kj", N, np.maximum(multipliers, 0.0))
+    size = np.abs(points).max(axis=1) + np.abs(offsets).max()
+    gram = np.einsum("kij,klj->kil", N, N) + np.eye(3) * ~used
+    smallest = np.sqrt(np.maximum(np.linalg.eigvalsh(gram)[:, 0], _EPS))
+    rounding = 8 * _EPS * size
+    return np.asarray(
+        np.linalg.norm(stationarity, axis=1)
+        + (np.linalg.norm(r, axis=1) + rounding) / np.minimum(smallest, 1.0)
+    )

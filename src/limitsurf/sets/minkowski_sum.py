@@ -1,0 +1,110 @@
+"""Minkowski sums: the limit surface of several contacts is the sum of theirs (Lemma 10)."""
+
+from __future__ import annotations
+
+from functools import cached_property, reduce
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from limitsurf.conic.form import ConicForm, minkowski_sum
+from limitsurf.errors import InputError
+from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.v_polytope import VPolytope
+from limitsurf.sets.vertex_sum import vertex_sum
+
+__all__ = ["MinkowskiSum"]
+
+Array = NDArray[np.float64]
+
+
+class MinkowskiSum(ConvexSet):
+    """The set ``{x_1 + ... + x_k : x_i in S_i}``; support functions add.
+
+    Parameters
+    ----------
+    *sets : ConvexSet
+        At least one, all of one dimension.
+
+    Notes
+    -----
+    The sum of polytopes and zonotopes in up to three dimensions is made explicit when a
+    projection first needs it; other sums are projected through the conic form.
+
+    Examples
+    --------
+    >>> from limitsurf.sets.ellipsoid import Ellipsoid
+    >>> disk = Ellipsoid([0, 0], [[1, 0], [0, 1]])
+    >>> MinkowskiSum(disk, disk, disk).support([3.0, 4.0])
+    array(15.)
+    """
+
+    def __init__(self, *sets: ConvexSet) -> None:
+        if not sets:
+            raise InputError("sets", "are missing", remedy="give at least one set")
+        dims = [s.dim for s in sets]
+        if len(set(dims)) > 1:
+            raise InputError("sets", f"have different dimensions {dims}")
+        self._sets = tuple(sets)
+
+    @property
+    def sets(self) -> tuple[ConvexSet, ...]:
+        """The terms."""
+        return self._sets
+
+    @property
+    def dim(self) -> int:
+        """Dimension n of the space."""
+        return self._sets[0].dim
+
+    @cached_property
+    def explicit(self) -> VPolytope | None:
+        """The sum as one polytope, if all terms are polytopes in up to three dimensions."""
+        if self.dim > 3:
+            return None
+        terms = [points for s in self._sets if (points := s.extreme_points()) is not None]
+        return VPolytope(vertex_sum(terms)) if len(terms) == len(self._sets) else None
+
+    def extreme_points(self) -> Array | None:
+        """Return the vertices of the sum, if it is explicit."""
+        return None if self.explicit is None else self.explicit.vertices
+
+    def conic_form(self) -> ConicForm:
+        """Return the sum of the forms."""
+        return minkowski_sum([s.conic_form() for s in self._sets])
+
+    def face(self, d: ArrayLike, tol: float = 1e-9) -> ConvexSet:
+        """Return the sum of the faces with normal d."""
+        direction = as_array("d", d, self.dim)
+        return MinkowskiSum(*[s.face(direction, tol) for s in self._sets])
+
+    def linear_image(self, matrix: Array, offset: Array) -> ConvexSet | None:
+        """Return the sum of the images in closed form, if all terms have one."""
+        zero = np.zeros(len(matrix))
+        images = [
+            s.linear_image(matrix, offset if i == 0 else zero) for i, s in enumerate(self._sets)
+        ]
+        return MinkowskiSum(*[s for s in images if s is not None]) if all(images) else None
+
+    def _support_points(self, directions: Array) -> Array:
+        return reduce(np.add, [s.support_point(directions) for s in self._sets])
+
+    def _supports(self, directions: Array) -> Array:
+        return reduce(np.add, [s.support(directions) for s in self._sets])
+
+    def _project(self, points: Array, metric: Metric) -> Rows:
+        same = self.explicit
+        return super()._project(points, metric) if same is None else same._project(points, metric)
+
+    def _distances(self, points: Array, metric: Metric) -> Array:
+        same = self.explicit
+        if same is None:
+            return super()._distances(points, metric)
+        return same._distances(points, metric)
+
+    def __repr__(self) -> str:
+        """Return the terms."""
+        terms = ", ".join(repr(s) for s in self._sets[:4])
+        more = f", and {len(self._sets) - 4} more" if len(self._sets) > 4 else ""
+        return f"MinkowskiSum({terms}{more})"

@@ -1,0 +1,72 @@
+"""The record of a projection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Projection", "Status"]
+
+Array = NDArray[np.float64]
+
+
+class Status(IntEnum):
+    """How a projection ended; its text says what to do."""
+
+    OUTSIDE = 0
+    INSIDE = 1
+    FAILED = 2
+
+    def __str__(self) -> str:
+        """Return the status in words."""
+        return (
+            "solved, the point lies outside",
+            "solved, the point lies in the set",
+            "not solved to tolerance: scale the set to size 1, or use a metric closer to its shape",
+        )[int(self)]
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Closest points of a set, for points of shape (..., n); all other fields follow that shape.
+
+    Attributes
+    ----------
+    point : (..., n) float
+        The closest points.
+    distance : (...,) float
+        Distance, in the norm of the metric.
+    normal : (..., n) float
+        Unit outer normal ``W (p - point)``, zeros for points inside.
+    error_bound : (...,) float
+        Certified distance to the true closest point, in the norm of the metric.
+    iterations : (...,) int
+        Iterations of the solver.
+    status : (...,) int
+        Values of `Status`.
+    """
+
+    point: Array
+    distance: Array
+    normal: Array
+    error_bound: Array
+    iterations: NDArray[np.int64]
+    status: NDArray[np.int64]
+
+    @property
+    def inside(self) -> NDArray[np.bool_]:
+        """Whether the points lie in the set."""
+        return np.asarray(self.status == Status.INSIDE)
+
+    def __repr__(self) -> str:
+        """Return the point, or the number of points."""
+        if self.point.ndim == 1:
+            where = np.array2string(self.point, precision=6, separator=", ")
+            return (
+                f"Projection({where}, distance {float(self.distance):.6g}, "
+                f"error at most {float(self.error_bound):.1e})"
+            )
+        return f"Projection of {self.status.size} points, {int(self.inside.sum())} inside"

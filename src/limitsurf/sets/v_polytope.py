@@ -1,0 +1,199 @@
+"""Polytopes given by their vertices."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+
+from limitsurf.conic.form import Cone, ConicForm
+from limitsurf.errors import InputError
+from limitsurf.kernels.gjk import closest_on_vertices
+from limitsurf.kernels.hill_climbing import (
+    Cells,
+    Graph,
+    direction_cells,
+    support_vertices,
+    vertex_graph,
+)
+from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.hulls import Hull, convex_hull
+from limitsurf.sets.mesh import hull_mesh
+from limitsurf.sets.projection import Status
+
+if TYPE_CHECKING:
+    from limitsurf.sets.h_polytope import HPolytope
+
+__all__ = ["VPolytope"]
+
+Array = NDArray[np.float64]
+
+_EPS = float(np.finfo(np.float64).eps)
+
+
+class VPolytope(ConvexSet):
+    """The convex hull of points; never empty. Flat ones, segments and points are fine.
+
+    Parameters
+    ----------
+    vertices : (m, n) float
+        Points, one a row; those that are not extreme are dropped.
+
+    Examples
+    --------
+    >>> triangle = VPolytope([[0, 0], [2, 0], [0, 2]])
+    >>> triangle.project([2.0, 2.0]).point
+    array([1., 1.])
+    """
+
+    def __init__(self, vertices: ArrayLike) -> None:
+        points = as_array("vertices", vertices, None, None)
+        if points.size == 0:
+            raise InputError("vertices", "are missing", remedy="give at least one point")
+        hull = convex_hull(points)
+        renumber = np.full(len(points), -1)
+        renumber[hull.vertices] = np.arange(len(hull.vertices))
+        self._hull = Hull(
+            np.arange(len(hull.vertices)),
+            hull.normals,
+            hull.offsets,
+            renumber[hull.triangles],
+            hull.rank,
+        )
+        self._vertices = as_array("vertices", points[hull.vertices], None, None)
+
+    @property
+    def vertices(self) -> Array:
+        """Extreme points (k, n)."""
+        return self._vertices
+
+    @property
+    def dim(self) -> int:
+        """Dimension n of the space."""
+        return int(self._vertices.shape[1])
+
+    @property
+    def rank(self) -> int:
+        """Dimension of the polytope itself."""
+        return self._hull.rank
+
+    @property
+    def triangles(self) -> NDArray[np.int64]:
+        """Surface triangles (t, 3), outwards, of a solid in three dimensions; else empty."""
+        return self._hull.triangles
+
+    def to_mesh(self, directions: int = 0) -> tuple[Array, NDArray[np.int64]]:
+        """Return the vertices and outward triangles of a polytope in three dimensions."""
+        del directions
+        if self.dim != 3:
+            raise InputError("set", f"has dimension {self.dim}", remedy="meshes need 3")
+        return hull_mesh(self._vertices)
+
+    def conic_form(self) -> ConicForm:
+        """Return ``{V'w : w >= 0, sum w = 1}``."""
+        k = len(self._vertices)
+        A = sparse.csc_matrix(sparse.vstack([np.ones((1, k)), sparse.eye(k)]))
+        b = np.concatenate([[-1.0], np.zeros(k)])
+        cones = (Cone("zero", 1), Cone("nonnegative", k))
+        return ConicForm(self._vertices.T, np.zeros(self.dim), A, b, cones)
+
+    def face(self, d: ArrayLike, tol: float = 1e-9) -> VPolytope:
+        """Return the face with outer normal d: the vertices farthest along d."""
+        direction = as_array("d", d, self.dim)
+        along = (self._vertices - self._vertices[0]) @ direction
+        size = np.linalg.norm(direction) * float(np.ptp(self._vertices, axis=0).max())
+        return VPolytope(self._vertices[along >= along.max() - tol * size])
+
+    def to_h(self) -> HPolytope:
+        """Return the polytope by its facets; a flat one gets pairs of opposite facets."""
+        from limitsurf.sets.h_polytope import HPolytope  # each converts to the other
+
+        normals, first = np.unique(
+            np.round(np.column_stack([self._hull.normals, self._hull.offsets]), 14),
+            axis=0,
+            return_index=True,
+        )
+        del normals
+        return HPolytope(self._hull.normals[first], self._hull.offsets[first])
+
+    def extreme_points(self) -> Array:
+        """Return the vertices."""
+        return self._vertices
+
+    def linear_image(self, matrix: Array, offset: Array) -> VPolytope:
+        """Return ``{M x + c : x in S}``, again a polytope."""
+        return VPolytope(self._vertices @ matrix.T + offset)
+
+    def _support_points(self, directions: Array) -> Array:
+        best = np.argmax(directions @ self._vertices.T, axis=1)
+        points: Array = self._vertices[best]
+        return points
+
+    @cached_property
+    def _graph(self) -> Graph:
+        return vertex_graph(len(self._vertices), self._hull.triangles)
+
+    @cached_property
+    def _cells(self) -> Cells:
+        return direction_cells(_lifted(self._vertices), self._graph)
+
+    def _project(self, points: Array, metric: Metric) -> Rows:
+        if self.dim > 3:
+            return super()._project(points, metric)
+        scaled, vertices = metric.into(points), metric.into(self._vertices)
+        lifted = _lifted(vertices)
+        cells = self._cells if metric.identity else direction_cells(lifted, self._graph)
+        lifted_points = _lifted(scaled)
+        closest, simplex, _, count, failed = closest_on_vertices(
+            lifted_points, lifted, self._graph, cells
+        )
+        inside = simplex[:, 0] < 0
+        farthest = support_vertices(lifted_points - closest, lifted, self._graph, cells)
+        bound = _gap_bounds(lifted_points, closest, lifted, simplex, farthest)
+        closest = closest[:, : self.dim]
+        status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
+        status = np.where(failed != 0, Status.FAILED, status)
+        point = np.where(inside[:, None], points, metric.back(closest))
+        return Rows(point, bound, count.astype(np.int64), status.astype(np.int64))
+
+    def _distances(self, points: Array, metric: Metric) -> Array:
+        if self.dim > 3:
+            return super()._distances(points, metric)
+        rows = self._project(points, metric)
+        return np.asarray(np.linalg.norm(metric.into(points - rows.point), axis=1))
+
+    def __repr__(self) -> str:
+        """Return the number of vertices and the rank."""
+        flat = "" if self.rank == self.dim else f" of rank {self.rank}"
+        return f"VPolytope({len(self._vertices)} vertices{flat} in {self.dim} dimensions)"
+
+
+def _lifted(points: Array) -> Array:
+    """Return points in up to three dimensions with zeros for those that are missing."""
+    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
+
+
+def _gap_bounds(
+    points: Array,
+    closest: Array,
+    vertices: Array,
+    simplex: NDArray[np.int32],
+    farthest: NDArray[np.int32],
+) -> Array:
+    """Return certified errors: ``|x - x*|^2 <= max over vertices v of g.(v - x)``, g = p - x.
+
+    The maximum is attained at the vertex farthest along g. On x's own face g.(v - x) is zero but
+    for rounding, which moves x only linearly.
+    """
+    g = points - closest
+    size = np.abs(vertices).max() + np.abs(points).max(axis=1)
+    rounding = 8 * _EPS * size
+    gap = (g * (vertices[farthest] - closest)).sum(axis=1)
+    gap -= rounding * np.sqrt((g * g).sum(axis=1))
+    gap[(simplex == farthest[:, None]).any(axis=1)] = 0.0
+    bound = np.sqrt(np.maximum(gap, 0.0)) + rounding
+    return np.asarray(np.where(simplex[:, 0] < 0, 0.0, bound))
