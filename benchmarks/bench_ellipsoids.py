@@ -126,7 +126,8 @@ def main():
         exact_trust, by_trust = timed(lambda p: by_scipy(A, p), few)
         print(
             f"| {name} | {median(runs):.2f} | {error(ours):.0e} "
-            f"| {conic:.0f} | {error(by_cone):.0e} | {exact_trust:.0f} | {error(by_trust):.0e} | {conic / median(runs):.0f} |"
+            f"| {conic:.0f} | {error(by_cone):.0e} | {exact_trust:.0f} | {error(by_trust):.0e} "
+            f"| {conic / median(runs):.0f} |"
         )
 
 
