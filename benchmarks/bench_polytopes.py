@@ -26,6 +26,8 @@ from scipy.spatial import ConvexHull
 from limitsurf.kernels.dual_active_set import closest_on_facets
 from limitsurf.kernels.gjk import closest_on_vertices
 from limitsurf.kernels.hill_climbing import direction_cells, vertex_graph
+from limitsurf.sets.h_polytope import HPolytope
+from limitsurf.sets.v_polytope import VPolytope
 
 BODIES = ((20, 1.0), (200, 1.0), (2000, 1.0), (20, 1e-6), (200, 1e-6), (2000, 1e-6))
 N_POINTS = 200
@@ -158,14 +160,29 @@ def cvxpy_peer(body):
     return one_by_one(call)
 
 
+def facets_set(body):
+    polytope = HPolytope(body.A, body.b)
+    return lambda points: polytope.project(points).point
+
+
+def vertices_set(body):
+    polytope = VPolytope(body.V)
+    return lambda points: polytope.project(points).point
+
+
 METHODS = {  # name: how to set it up, points per run, runs
-    "facets": (facets_kernel, N_POINTS, 15),
-    "vertices": (vertices_kernel, N_POINTS, 15),
+    "HPolytope": (facets_set, N_POINTS, 15),
+    "VPolytope": (vertices_set, N_POINTS, 15),
+    "facets kernel": (facets_kernel, N_POINTS, 15),
+    "vertices kernel": (vertices_kernel, N_POINTS, 15),
     "daqp": (daqp_peer, N_POINTS, 5),
     "coal GJK": (coal_peer, N_POINTS, 5),
     "Clarabel": (clarabel_peer, 20, 3),
     "cvxpy, parametrised": (cvxpy_peer, 10, 3),
 }
+
+
+OURS = ("HPolytope", "VPolytope", "facets kernel", "vertices kernel")
 
 
 def measure(body, name):
@@ -198,21 +215,21 @@ def main():
     """Print the first calls, then one table of times and errors and one of ratios."""
     warnings.filterwarnings("ignore", message="Solution may be inaccurate")
     body = Body(20, 1.0)
-    for name in ("facets", "vertices"):
+    for name in OURS:
         start = time.perf_counter()
         METHODS[name][0](body)(body.points)
         print(f"first call, {name} (compiled or read from the cache): ", end="")
         print(f"{time.perf_counter() - start:.2f} s")
     names = available()
-    peers = [name for name in names if name not in ("facets", "vertices")]
-    head = [*names, *(f"{name} / best kernel" for name in peers)]
+    peers = [name for name in names if name not in OURS]
+    head = [*names, *(f"{name} / ours" for name in peers)]
     print("\nmicroseconds for one point (relative error)\n")
     print("| facets | flatness | " + " | ".join(head) + " |")
     print("|" + "---|" * (len(head) + 2))
     for facets, flatness in BODIES:
         body = Body(facets, flatness)
         found = {name: measure(body, name) for name in names}
-        best = min(found["facets"][0], found["vertices"][0])
+        best = min(found["HPolytope"][0], found["VPolytope"][0])
         cells = [f"{1e6 * t:.3g} ({error})" for t, error in found.values()]
         cells += [f"{found[name][0] / best:.1f}" for name in peers]
         print(f"| {facets} | {flatness:g} | " + " | ".join(cells) + " |")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import nnls
 
 from limitsurf.errors import InputError
 from limitsurf.sets.h_polytope import HPolytope
@@ -138,3 +139,31 @@ def test_meshes_are_closed_and_outward(rng):
     assert len(both_sides) == 2 * (len(flat) - 2)
     with pytest.raises(InputError, match="meshes need 3"):
         VPolytope(rng.normal(size=(5, 2))).to_mesh()
+
+
+def test_projections_report_the_exact_face(rng):
+    """The vertices span a face with the closest point in it; the facets hold with equality."""
+    cloud = rng.normal(size=(120, 3))
+    V = VPolytope(cloud)
+    for H in (V.to_h(), box(1.0, 2.0, 0.5), box(1.0, 2.0, 1e-6)):
+        p = 4 * rng.normal(size=(40, 3))
+        projection = H.project(p)
+        assert np.array_equal(projection.active[:, 0] >= 0, ~projection.inside)
+        for k in np.flatnonzero(~projection.inside):
+            facets = projection.active[k][projection.active[k] >= 0]
+            assert H.A[facets] @ projection.point[k] == pytest.approx(H.b[facets], abs=1e-9)
+            # the residual is a non-negative combination of the facets' normals
+            _, rest = nnls(H.A[facets].T, p[k] - projection.point[k])
+            assert rest <= 1e-8
+    projection = V.project(p)
+    outside = ~projection.inside
+    for x, vertices in zip(projection.point[outside], projection.active[outside], strict=True):
+        vertices = V.vertices[vertices[vertices >= 0]]
+        weights, *_ = np.linalg.lstsq(
+            np.vstack([vertices.T, np.ones(len(vertices))]), np.append(x, 1.0), rcond=None
+        )
+        assert np.all(weights >= -1e-9)
+        assert vertices.T @ weights == pytest.approx(x, abs=1e-10)
+    inside = V.project(V.vertices.mean(axis=0))
+    assert np.all(inside.active == -1)
+    assert box(1, 1, 1).project([2.0, 2.0, 0.0]).active.tolist()[:2] != [-1, -1]

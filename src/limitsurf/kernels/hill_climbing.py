@@ -20,8 +20,10 @@ __all__ = [
     "Cells",
     "Graph",
     "Stretch",
+    "climb",
     "direction_cells",
     "farthest_vertex",
+    "highest_vertex",
     "support_vertices",
     "vertex_graph",
 ]
@@ -63,7 +65,7 @@ def vertex_graph(n: int, triangles: NDArray[np.integer]) -> Graph:
 
 
 @compiled
-def _highest(V: Floats, d: Vector) -> int:
+def highest_vertex(V: Floats, d: Vector) -> int:
     """Look at all vertices."""
     top, best = -np.inf, 0
     for i in range(V.shape[0]):
@@ -74,7 +76,7 @@ def _highest(V: Floats, d: Vector) -> int:
 
 
 @compiled
-def _climb(V: Floats, ptr: Ints, adj: Ints, start: int, d: Vector) -> int:
+def climb(V: Floats, ptr: Ints, adj: Ints, start: int, d: Vector) -> int:
     """Go from neighbour to better neighbour until there is none."""
     top = dot(row(V, start), d)
     vertex, best = -1, start
@@ -171,7 +173,7 @@ def direction_cells(V: Floats, graph: Graph) -> Cells:
         for i in range(n):
             for j in range(n):
                 d = _unstretched(stretch, _direction_of_cell(n, face, i, j))
-                vertex = _climb(V, ptr, adj, vertex, d)
+                vertex = climb(V, ptr, adj, vertex, d)
                 start[face, i, j] = vertex
     return Cells(centre, reach, stretch, start)
 
@@ -180,8 +182,8 @@ def direction_cells(V: Floats, graph: Graph) -> Cells:
 def farthest_vertex(V: Floats, ptr: Ints, adj: Ints, start: Ints, L: Stretch, d: Vector) -> int:
     """Return the vertex farthest along d."""
     if V.shape[0] <= _BRUTE or adj.shape[0] == 0:
-        return _highest(V, d)
-    return _climb(V, ptr, adj, start[_cell(start.shape[1], _stretched(L, d))], d)
+        return highest_vertex(V, d)
+    return climb(V, ptr, adj, start[_cell(start.shape[1], _stretched(L, d))], d)
 
 
 @compiled

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 
-__all__ = ["Metric", "as_array", "as_points", "read_metric"]
+__all__ = ["Metric", "as_array", "as_points", "lifted", "read_metric"]
 
 Array = NDArray[np.float64]
 
@@ -93,3 +93,11 @@ def read_metric(metric: ArrayLike | None, dim: int) -> Metric:
     except np.linalg.LinAlgError as error:
         raise InputError("metric", "is not positive definite") from error
     return Metric(matrix, factor, identity=bool(np.array_equal(matrix, np.eye(dim))))
+
+
+def lifted(points: Array) -> Array:
+    """Return points in up to three dimensions with zeros for those that are missing."""
+    k, n = points.shape
+    space = np.zeros((k, 3))  # a copy: kernels are compiled anew for read-only arrays
+    space[:, :n] = points
+    return space

@@ -32,8 +32,9 @@ class Rows:
 
     point: Array
     error_bound: Array
-    iterations: NDArray[np.int64]
-    status: NDArray[np.int64]
+    iterations: NDArray[np.integer[Any]]
+    status: NDArray[np.integer[Any]]
+    active: NDArray[np.integer[Any]] | None = None
 
 
 class ConvexSet(ABC):
@@ -120,13 +121,13 @@ class ConvexSet(ABC):
         rows = self._project(points, W)
         failed = rows.status == Status.FAILED
         e = points - rows.point
-        distance = np.linalg.norm(W.into(e), axis=1)
+        scaled = W.into(e)
+        distance = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
         inside = rows.status == Status.INSIDE
         distance[inside] = 0.0
-        normal = e @ W.W
-        length = np.linalg.norm(normal, axis=1, keepdims=True)
-        length[length == 0.0] = 1.0
-        normal /= length
+        normal = e if W.identity else e @ W.W
+        length = distance if W.identity else np.linalg.norm(normal, axis=1)
+        normal = normal / np.where(length > 0.0, length, 1.0)[:, None]
         normal[inside] = 0.0
         projection = Projection(
             point=rows.point.reshape(*shape, self.dim),
@@ -135,6 +136,7 @@ class ConvexSet(ABC):
             error_bound=rows.error_bound.reshape(shape),
             iterations=rows.iterations.reshape(shape),
             status=rows.status.reshape(shape),
+            active=_reshaped(rows.active, shape),
         )
         if throw and failed.any():
             raise SolveFailed(
@@ -188,3 +190,9 @@ class ConvexSet(ABC):
     def _distances(self, points: Array, metric: Metric) -> Array:
         form = self.conic_form()
         return np.array([conic_distance(form, p, metric.W).value for p in points])
+
+
+def _reshaped(
+    active: NDArray[np.integer[Any]] | None, shape: tuple[int, ...]
+) -> NDArray[np.integer[Any]] | None:
+    return None if active is None else active.reshape(*shape, active.shape[1])

@@ -105,7 +105,7 @@ class Ellipsoid(ConvexSet):
         return np.asarray(directions @ self._center + lengths)
 
     def _project(self, points: Array, metric: Metric) -> Rows:
-        center = metric.into(self._center[None])[0]
+        center = metric.into(self._center[None])[0].copy()
         U, s = self._decomposition if metric.identity else _decompose(metric.C @ self._axes)
         scaled = metric.into(points)
         closest, bound = np.empty_like(scaled), np.empty(len(points))
@@ -114,7 +114,7 @@ class Ellipsoid(ConvexSet):
         inside = (count == 0) & (np.linalg.norm(scaled - closest, axis=1) <= bound)
         status = np.where(count < 0, Status.FAILED, np.where(inside, Status.INSIDE, Status.OUTSIDE))
         point = np.where(inside[:, None], points, metric.back(closest))
-        return Rows(point, bound, count.astype(np.int64), status.astype(np.int64))
+        return Rows(point, bound, count, status)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
         rows = self._project(points, metric)

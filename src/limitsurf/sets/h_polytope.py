@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +12,8 @@ from scipy import sparse
 from limitsurf.conic.form import Cone, ConicForm
 from limitsurf.errors import InputError
 from limitsurf.kernels.dual_active_set import closest_on_facets
-from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.kernels.polytope_bounds import common_facets, facet_bounds
+from limitsurf.sets.arguments import Metric, as_array, lifted
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.hulls import chebyshev_center, is_bounded, vertices_of
 from limitsurf.sets.projection import Status
@@ -21,8 +23,8 @@ __all__ = ["HPolytope"]
 
 Array = NDArray[np.float64]
 
-_MANY = 100  # facets from which climbing over vertices beats scanning facets
-_EPS = float(np.finfo(np.float64).eps)
+_TIGHT = 1e-9  # slack of a facet at a vertex, relative to the size, that Qhull may leave
+_MANY = 300  # facets from which climbing over vertices beats scanning facets
 
 
 class HPolytope(ConvexSet):
@@ -118,35 +120,51 @@ class HPolytope(ConvexSet):
             return False
         return bool(self._ball[1] < 1e-3 * np.ptp(self.to_v().vertices, axis=0).max())
 
+    def _unit_facets(self, metric: Metric) -> tuple[Array, Array]:
+        """Return facets with unit normals in coordinates in which the metric is the identity."""
+        if metric.identity:
+            return self._own_unit_facets
+        normals = np.asarray(np.linalg.solve(metric.C.T, self._A.T).T, dtype=np.float64)
+        return _normalised(normals, self._b)
+
+    @cached_property
+    def _own_unit_facets(self) -> tuple[Array, Array]:
+        return _normalised(self._A, self._b)
+
     def _project(self, points: Array, metric: Metric) -> Rows:
         if self.dim > 3:
             return super()._project(points, metric)
         if self._flat or (len(self._b) > _MANY and self.bounded):
-            return self.to_v()._project(points, metric)
-        normals = self._A if metric.identity else np.linalg.solve(metric.C.T, self._A.T).T
-        lengths = np.linalg.norm(normals, axis=1)
-        scaled = metric.into(points)
-        closest, active, multipliers, count, failed = closest_on_facets(
-            _lifted(scaled), _lifted(normals / lengths[:, None]), self._b / lengths
-        )
+            rows = self.to_v()._project(points, metric)
+            assert rows.active is not None
+            simplex = rows.active.astype(np.int32)
+            facets = common_facets(simplex, *self._facets_of_vertices)
+            return replace(rows, active=facets)
+        A, b = self._unit_facets(metric)
+        scaled = lifted(metric.into(points))
+        closest, active, multipliers, count, failed = closest_on_facets(scaled, A, b)
         inside = (active[:, 0] < 0) & (failed == 0)
-        bound = _facet_bounds(
-            scaled,
-            closest[:, : self.dim],
-            normals / lengths[:, None],
-            self._b / lengths,
-            active,
-            multipliers,
-        )
+        bound = facet_bounds(scaled, closest, A, b, active, multipliers)
         status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
         status = np.where(failed != 0, Status.FAILED, status)
         point = np.where(inside[:, None], points, metric.back(closest[:, : self.dim]))
         return Rows(
             point,
-            np.where(inside, 0.0, bound),
-            count.astype(np.int64),
-            status.astype(np.int64),
+            bound,
+            count,
+            status,
+            active,
         )
+
+    @cached_property
+    def _facets_of_vertices(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """For vertex i of `to_v`, the facets through it: ``facets[ptr[i]:ptr[i + 1]]``."""
+        A, b = self._own_unit_facets
+        vertices = self.to_v().vertices
+        slack = b - vertices @ A[:, : self.dim].T
+        rows, facets = np.nonzero(slack <= _TIGHT * (np.abs(b).max() + np.abs(vertices).max()))
+        ptr = np.searchsorted(rows, np.arange(len(vertices) + 1))
+        return ptr.astype(np.int32), facets.astype(np.int32)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
         if self.dim > 3:
@@ -159,34 +177,6 @@ class HPolytope(ConvexSet):
         return f"HPolytope({len(self._b)} facets in {self.dim} dimensions)"
 
 
-def _lifted(points: Array) -> Array:
-    """Return points in up to three dimensions with zeros for those that are missing."""
-    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
-
-
-def _facet_bounds(
-    points: Array,
-    closest: Array,
-    normals: Array,
-    offsets: Array,
-    active: NDArray[np.int32],
-    multipliers: Array,
-) -> Array:
-    """Return certified errors from the optimality conditions on the active facets.
-
-    With ``N x = b_N`` on the active facets and ``p - x = N' lambda``, lambda >= 0, x is exact.
-    A residual r of the first moves x by at most ``|r| / sigma_min(N)``, one of the second by its
-    length.
-    """
-    used = (active >= 0)[..., None]
-    N = np.where(used, normals[active], 0.0)
-    r = np.where(active >= 0, offsets[active] - np.einsum("kij,kj->ki", N, closest), 0.0)
-    stationarity = points - closest - np.einsum("kij,ki->kj", N, np.maximum(multipliers, 0.0))
-    size = np.abs(points).max(axis=1) + np.abs(offsets).max()
-    gram = np.einsum("kij,klj->kil", N, N) + np.eye(3) * ~used
-    smallest = np.sqrt(np.maximum(np.linalg.eigvalsh(gram)[:, 0], _EPS))
-    rounding = 8 * _EPS * size
-    return np.asarray(
-        np.linalg.norm(stationarity, axis=1)
-        + (np.linalg.norm(r, axis=1) + rounding) / np.minimum(smallest, 1.0)
-    )
+def _normalised(A: Array, b: Array) -> tuple[Array, Array]:
+    lengths = np.linalg.norm(A, axis=1)
+    return lifted(A / lengths[:, None]), b / lengths

@@ -133,7 +133,7 @@ class PolynomialSet(ConvexSet):
         count = np.empty(len(points), dtype=np.int32)
         closest_on_polynomial(points, self._exponents, self._coefficients, closest, bound, count)
         status = np.choose(np.sign(count) + 1, [Status.FAILED, Status.INSIDE, Status.OUTSIDE])
-        return Rows(closest, bound, count.astype(np.int64), status.astype(np.int64))
+        return Rows(closest, bound, count, status)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
         if not metric.identity:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,14 +48,18 @@ class Projection:
         Iterations of the solver.
     status : (...,) int
         Values of `Status`.
+    active : (..., m) int or None
+        Polytopes only: the exact face of the closest point, as indices of the vertices that span
+        it (`VPolytope`), or of up to three facets through it (`HPolytope`), then -1; all -1 inside.
     """
 
     point: Array
     distance: Array
     normal: Array
     error_bound: Array
-    iterations: NDArray[np.int64]
-    status: NDArray[np.int64]
+    iterations: NDArray[np.integer[Any]]
+    status: NDArray[np.integer[Any]]
+    active: NDArray[np.integer[Any]] | None = None
 
     @property
     def inside(self) -> NDArray[np.bool_]:

@@ -16,10 +16,10 @@ from limitsurf.kernels.hill_climbing import (
     Cells,
     Graph,
     direction_cells,
-    support_vertices,
     vertex_graph,
 )
-from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.kernels.polytope_bounds import vertex_bounds
+from limitsurf.sets.arguments import Metric, as_array, lifted
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.hulls import Hull, convex_hull
 from limitsurf.sets.mesh import hull_mesh
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["VPolytope"]
 
 Array = NDArray[np.float64]
-
-_EPS = float(np.finfo(np.float64).eps)
 
 
 class VPolytope(ConvexSet):
@@ -139,26 +137,31 @@ class VPolytope(ConvexSet):
 
     @cached_property
     def _cells(self) -> Cells:
-        return direction_cells(_lifted(self._vertices), self._graph)
+        return direction_cells(lifted(self._vertices), self._graph)
 
     def _project(self, points: Array, metric: Metric) -> Rows:
         if self.dim > 3:
             return super()._project(points, metric)
         scaled, vertices = metric.into(points), metric.into(self._vertices)
-        lifted = _lifted(vertices)
-        cells = self._cells if metric.identity else direction_cells(lifted, self._graph)
-        lifted_points = _lifted(scaled)
+        corners = lifted(vertices)
+        cells = self._cells if metric.identity else direction_cells(corners, self._graph)
+        lifted_points = lifted(scaled)
         closest, simplex, _, count, failed = closest_on_vertices(
-            lifted_points, lifted, self._graph, cells
+            lifted_points, corners, self._graph, cells
         )
         inside = simplex[:, 0] < 0
-        farthest = support_vertices(lifted_points - closest, lifted, self._graph, cells)
-        bound = _gap_bounds(lifted_points, closest, lifted, simplex, farthest)
+        bound = vertex_bounds(lifted_points, closest, corners, self._graph, simplex)
         closest = closest[:, : self.dim]
         status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
         status = np.where(failed != 0, Status.FAILED, status)
         point = np.where(inside[:, None], points, metric.back(closest))
-        return Rows(point, bound, count.astype(np.int64), status.astype(np.int64))
+        return Rows(
+            point,
+            bound,
+            count,
+            status,
+            simplex,
+        )
 
     def _distances(self, points: Array, metric: Metric) -> Array:
         if self.dim > 3:
@@ -170,30 +173,3 @@ class VPolytope(ConvexSet):
         """Return the number of vertices and the rank."""
         flat = "" if self.rank == self.dim else f" of rank {self.rank}"
         return f"VPolytope({len(self._vertices)} vertices{flat} in {self.dim} dimensions)"
-
-
-def _lifted(points: Array) -> Array:
-    """Return points in up to three dimensions with zeros for those that are missing."""
-    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
-
-
-def _gap_bounds(
-    points: Array,
-    closest: Array,
-    vertices: Array,
-    simplex: NDArray[np.int32],
-    farthest: NDArray[np.int32],
-) -> Array:
-    """Return certified errors: ``|x - x*|^2 <= max over vertices v of g.(v - x)``, g = p - x.
-
-    The maximum is attained at the vertex farthest along g. On x's own face g.(v - x) is zero but
-    for rounding, which moves x only linearly.
-    """
-    g = points - closest
-    size = np.abs(vertices).max() + np.abs(points).max(axis=1)
-    rounding = 8 * _EPS * size
-    gap = (g * (vertices[farthest] - closest)).sum(axis=1)
-    gap -= rounding * np.sqrt((g * g).sum(axis=1))
-    gap[(simplex == farthest[:, None]).any(axis=1)] = 0.0
-    bound = np.sqrt(np.maximum(gap, 0.0)) + rounding
-    return np.asarray(np.where(simplex[:, 0] < 0, 0.0, bound))
