@@ -145,6 +145,8 @@ def test_failures_are_raised_or_returned(monkeypatch):
     with pytest.raises(SolveFailed, match="2 of 2 points not solved") as caught:
         E.project([[3.0, 0.0], [0.0, 4.0]])
     assert caught.value.best.point.shape == (2, 2)
+    with pytest.raises(SolveFailed, match="distance"):
+        E.distance([3.0, 0.0])
     returned = E.project([3.0, 0.0], throw=False)
     assert returned.status == Status.FAILED
     assert "scale the set" in str(Status(int(returned.status)))

@@ -187,6 +187,14 @@ class ConvexSet(ABC):
             np.where(inside, Status.INSIDE, Status.OUTSIDE).astype(np.int64),
         )
 
+    def _projected_distances(self, points: Array, metric: Metric) -> Array:
+        """Return distances of closest points, for sets in which these have a closed form."""
+        rows = self._project(points, metric)
+        if (rows.status == Status.FAILED).any():
+            raise SolveFailed(f"distance: {Status.FAILED!s}", best=rows)
+        distances = np.linalg.norm(metric.into(points - rows.point), axis=1)
+        return np.where(rows.status == Status.INSIDE, 0.0, distances)
+
     def _distances(self, points: Array, metric: Metric) -> Array:
         form = self.conic_form()
         return np.array([conic_distance(form, p, metric.W).value for p in points])

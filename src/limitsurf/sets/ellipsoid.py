@@ -117,8 +117,7 @@ class Ellipsoid(ConvexSet):
         return Rows(point, bound, count, status)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
-        rows = self._project(points, metric)
-        return np.asarray(np.linalg.norm(metric.into(points - rows.point), axis=1))
+        return self._projected_distances(points, metric)
 
     def __repr__(self) -> str:
         """Return centre and semi-axes."""

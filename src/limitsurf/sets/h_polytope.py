@@ -148,13 +148,7 @@ class HPolytope(ConvexSet):
         status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
         status = np.where(failed != 0, Status.FAILED, status)
         point = np.where(inside[:, None], points, metric.back(closest[:, : self.dim]))
-        return Rows(
-            point,
-            bound,
-            count,
-            status,
-            active,
-        )
+        return Rows(point, bound, count, status, active)
 
     @cached_property
     def _facets_of_vertices(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -169,8 +163,7 @@ class HPolytope(ConvexSet):
     def _distances(self, points: Array, metric: Metric) -> Array:
         if self.dim > 3:
             return super()._distances(points, metric)
-        rows = self._project(points, metric)
-        return np.asarray(np.linalg.norm(metric.into(points - rows.point), axis=1))
+        return self._projected_distances(points, metric)
 
     def __repr__(self) -> str:
         """Return the number of facets."""

@@ -69,24 +69,18 @@ class PolynomialSet(ConvexSet):
         A convex, even q without constant that vanishes at x vanishes along all of x's line; the
         kernel of its Hessians at enough points then holds x.
         """
-        n = self.dim
-        probes = np.vstack([np.eye(n), np.random.default_rng(0).normal(size=(20, n))])
-        total = np.zeros((n, n))
-        for i in range(n):
-            for j in range(n):
-                steps = np.eye(n)[i], np.eye(n)[j]
-                total[i, j] = sum(
-                    s
-                    * t
-                    * polynomial_values(
-                        self._exponents,
-                        self._coefficients,
-                        probes + 0.5 * (s * steps[0] + t * steps[1]),
-                    ).sum()
-                    for s in (1.0, -1.0)
-                    for t in (1.0, -1.0)
-                )
-        eigenvalues = np.linalg.eigvalsh(total)
+        axes = np.eye(self.dim)
+        probes = np.vstack([axes, np.random.default_rng(0).normal(size=(20, self.dim))])
+
+        def total(shift: Array) -> float:
+            values = polynomial_values(self._exponents, self._coefficients, probes + shift)
+            return float(values.sum())
+
+        hessian = [
+            [total(a + b) - total(a - b) - total(b - a) + total(-a - b) for b in 0.5 * axes]
+            for a in 0.5 * axes
+        ]
+        eigenvalues = np.linalg.eigvalsh(hessian)
         if eigenvalues[0] <= 1e-9 * max(eigenvalues[-1], 0.0) or eigenvalues[-1] <= 0.0:
             raise InputError("coefficients", "describe an unbounded set", remedy="add monomials")
 
@@ -138,7 +132,7 @@ class PolynomialSet(ConvexSet):
     def _distances(self, points: Array, metric: Metric) -> Array:
         if not metric.identity:
             return super()._distances(points, metric)
-        return np.asarray(np.linalg.norm(points - self._project(points, metric).point, axis=1))
+        return self._projected_distances(points, metric)
 
     def __repr__(self) -> str:
         """Return the number of monomials."""

@@ -110,12 +110,8 @@ class VPolytope(ConvexSet):
         """Return the polytope by its facets; a flat one gets pairs of opposite facets."""
         from limitsurf.sets.h_polytope import HPolytope  # each converts to the other
 
-        normals, first = np.unique(
-            np.round(np.column_stack([self._hull.normals, self._hull.offsets]), 14),
-            axis=0,
-            return_index=True,
-        )
-        del normals
+        rows = np.round(np.column_stack([self._hull.normals, self._hull.offsets]), 14)
+        _, first = np.unique(rows, axis=0, return_index=True)  # triangles of one facet
         return HPolytope(self._hull.normals[first], self._hull.offsets[first])
 
     def extreme_points(self) -> Array:
@@ -166,8 +162,7 @@ class VPolytope(ConvexSet):
     def _distances(self, points: Array, metric: Metric) -> Array:
         if self.dim > 3:
             return super()._distances(points, metric)
-        rows = self._project(points, metric)
-        return np.asarray(np.linalg.norm(metric.into(points - rows.point), axis=1))
+        return self._projected_distances(points, metric)
 
     def __repr__(self) -> str:
         """Return the number of vertices and the rank."""
