@@ -102,3 +102,17 @@ def test_bad_arguments():
         LinearImage(np.eye(3), contact(0, 0), [1.0])
     with pytest.raises(InputError, match="r: has shape"):
         transport([1, 2, 3])
+
+
+def test_adding_contacts_one_by_one_is_the_sum_of_all(rng):
+    """The paper's cell update: an explicit surface plus one more contact."""
+    contacts = [polygon_contact(*rng.normal(size=2)) for _ in range(5)]
+    total = contacts[0]
+    for one in contacts[1:]:
+        total = MinkowskiSum(total, one).explicit
+    at_once = MinkowskiSum(*contacts).explicit
+    d = rng.normal(size=(200, 3))
+    assert total.support(d) == pytest.approx(at_once.support(d), abs=1e-11)
+    assert total.support(d) == pytest.approx(sum(c.support(d) for c in contacts), abs=1e-11)
+    p = 10 * rng.normal(size=(20, 3))
+    assert total.project(p).point == pytest.approx(at_once.project(p).point, abs=1e-10)

@@ -92,8 +92,8 @@ class ConvexSet(ABC):
         `tol` is relative to the size of the set. d = 0 gives the set itself.
         """
 
-    def extreme_points(self) -> Array | None:
-        """Return points (k, n) whose convex hull is the set, if finitely many do; else None."""
+    def by_vertices(self) -> ConvexSet | None:
+        """Return the same set as a polytope given by its vertices, or None if it is none."""
         return None
 
     def linear_image(self, matrix: Array, offset: Array) -> ConvexSet | None:

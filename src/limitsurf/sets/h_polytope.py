@@ -89,22 +89,22 @@ class HPolytope(ConvexSet):
         return ConicForm(np.eye(n), np.zeros(n), A, self._b, (Cone("nonnegative", len(self._b)),))
 
     @cached_property
-    def _by_vertices(self) -> VPolytope:
+    def _vertex_form(self) -> VPolytope:
         if not self.bounded:
             raise InputError("A", "describes an unbounded polytope", remedy="add facets")
         return VPolytope(vertices_of(self._A, self._b, *self._ball))
 
     def to_v(self) -> VPolytope:
         """Return the polytope by its vertices."""
-        return self._by_vertices
+        return self._vertex_form
 
     def face(self, d: ArrayLike, tol: float = 1e-9) -> ConvexSet:
         """Return the face with outer normal d, by its vertices."""
         return self.to_v().face(d, tol)
 
-    def extreme_points(self) -> Array | None:
-        """Return the vertices, None if the polytope is unbounded."""
-        return self.to_v().vertices if self.bounded else None
+    def by_vertices(self) -> VPolytope | None:
+        """Return the polytope by its vertices, None if it is unbounded."""
+        return self.to_v() if self.bounded else None
 
     def linear_image(self, matrix: Array, offset: Array) -> ConvexSet | None:
         """Return ``{M x + c : x in S}`` by its vertices."""

@@ -42,7 +42,8 @@ class Hull:
 def affine_hull(points: Array) -> tuple[Array, Array, Array]:
     """Return origin, orthonormal directions (r, n) within, and (n - r, n) across the hull."""
     origin = points.mean(axis=0)
-    _, s, Vt = np.linalg.svd(points - origin, full_matrices=True)
+    few = len(points) < points.shape[1]  # else the thin Vt is square already
+    _, s, Vt = np.linalg.svd(points - origin, full_matrices=few)
     rounding = 4 * np.finfo(np.float64).eps * np.abs(points).max(initial=0.0)
     noise = max(_FLAT * np.abs(points - origin).max(initial=0.0), rounding)
     rank = min(int(np.sum(s > noise * np.sqrt(len(points)))), len(points) - 1)

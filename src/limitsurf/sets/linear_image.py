@@ -89,10 +89,10 @@ class LinearImage(ConvexSet):
             self._matrix, self._set.face(self._matrix.T @ direction, tol), self._offset
         )
 
-    def extreme_points(self) -> Array | None:
-        """Return the images of the extreme points of S."""
-        points = self._set.extreme_points()
-        return None if points is None else points @ self._matrix.T + self._offset
+    def by_vertices(self) -> ConvexSet | None:
+        """Return the image as a polytope by its vertices, if S is a polytope."""
+        inner = self._set.by_vertices()
+        return None if inner is None else inner.linear_image(self._matrix, self._offset)
 
     def linear_image(self, matrix: Array, offset: Array) -> ConvexSet | None:
         """Return the image of the image in closed form, if S has one."""

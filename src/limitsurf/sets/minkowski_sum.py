@@ -11,8 +11,8 @@ from limitsurf.conic.form import ConicForm, minkowski_sum
 from limitsurf.errors import InputError
 from limitsurf.sets.arguments import Metric, as_array
 from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.polytope_sum import polytope_sum
 from limitsurf.sets.v_polytope import VPolytope
-from limitsurf.sets.vertex_sum import vertex_sum
 
 __all__ = ["MinkowskiSum"]
 
@@ -63,12 +63,12 @@ class MinkowskiSum(ConvexSet):
         """The sum as one polytope, if all terms are polytopes in up to three dimensions."""
         if self.dim > 3:
             return None
-        terms = [points for s in self._sets if (points := s.extreme_points()) is not None]
-        return VPolytope(vertex_sum(terms)) if len(terms) == len(self._sets) else None
+        terms = [term for s in self._sets if isinstance(term := s.by_vertices(), VPolytope)]
+        return polytope_sum(terms) if len(terms) == len(self._sets) else None
 
-    def extreme_points(self) -> Array | None:
-        """Return the vertices of the sum, if it is explicit."""
-        return None if self.explicit is None else self.explicit.vertices
+    def by_vertices(self) -> VPolytope | None:
+        """Return the explicit sum."""
+        return self.explicit
 
     def conic_form(self) -> ConicForm:
         """Return the sum of the forms."""

@@ -18,6 +18,8 @@ from limitsurf.kernels.hill_climbing import (
     direction_cells,
     vertex_graph,
 )
+from limitsurf.kernels.hull_polytope import hull_polytope
+from limitsurf.kernels.normal_fan import Polytope, triangles
 from limitsurf.kernels.polytope_bounds import vertex_bounds
 from limitsurf.sets.arguments import Metric, as_array, lifted
 from limitsurf.sets.convex_set import ConvexSet, Rows
@@ -63,6 +65,29 @@ class VPolytope(ConvexSet):
             hull.rank,
         )
         self._vertices = as_array("vertices", points[hull.vertices], None, None)
+
+    @classmethod
+    def from_surface(cls, surface: Polytope) -> VPolytope:
+        """Return the polytope with an explicit surface, without a hull being computed again."""
+        if len(surface.normals) < 4:
+            return cls(surface.vertices)
+        made = cls.__new__(cls)
+        corner = surface.vertices[surface.indices[surface.offsets[:-1]]]
+        made._hull = Hull(
+            np.arange(len(surface.vertices)),
+            surface.normals,
+            np.einsum("ij,ij->i", surface.normals, corner),
+            triangles(surface).astype(np.int64),
+            3,
+        )
+        made._vertices = as_array("vertices", surface.vertices, None, 3)
+        made.surface = surface
+        return made
+
+    @cached_property
+    def surface(self) -> Polytope:
+        """Vertices, facets and normals of a polytope in three dimensions, coplanar parts merged."""
+        return hull_polytope(self._vertices)
 
     @property
     def vertices(self) -> Array:
@@ -114,9 +139,9 @@ class VPolytope(ConvexSet):
         _, first = np.unique(rows, axis=0, return_index=True)  # triangles of one facet
         return HPolytope(self._hull.normals[first], self._hull.offsets[first])
 
-    def extreme_points(self) -> Array:
-        """Return the vertices."""
-        return self._vertices
+    def by_vertices(self) -> VPolytope:
+        """Return the polytope itself."""
+        return self
 
     def linear_image(self, matrix: Array, offset: Array) -> VPolytope:
         """Return ``{M x + c : x in S}``, again a polytope."""

@@ -11,8 +11,8 @@ from scipy import sparse
 from limitsurf.conic.form import Cone, ConicForm
 from limitsurf.sets.arguments import Metric, as_array
 from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.polytope_sum import polytope_sum
 from limitsurf.sets.v_polytope import VPolytope
-from limitsurf.sets.vertex_sum import vertex_sum
 
 __all__ = ["Zonotope"]
 
@@ -78,14 +78,14 @@ class Zonotope(ConvexSet):
         reach = np.abs(directions @ self._generators.T).sum(axis=1)
         return np.asarray(directions @ self._center + reach)
 
-    def extreme_points(self) -> Array | None:
-        """Return the vertices in up to three dimensions, None beyond."""
-        return None if self.dim > 3 else self._polytope.vertices
+    def by_vertices(self) -> VPolytope | None:
+        """Return the zonotope by its vertices in up to three dimensions, None beyond."""
+        return None if self.dim > 3 else self._polytope
 
     @cached_property
     def _polytope(self) -> VPolytope:
-        segments = [np.array([-g, g]) for g in self._generators if g.any()]
-        return VPolytope(vertex_sum([self._center[None], *segments]))
+        segments = [VPolytope([-g, g]) for g in self._generators if g.any()]
+        return polytope_sum([VPolytope(self._center[None]), *segments])
 
     def _project(self, points: Array, metric: Metric) -> Rows:
         solve = super()._project if self.dim > 3 else self._polytope._project
