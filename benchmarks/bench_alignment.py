@@ -4,7 +4,8 @@ Usage: python benchmarks/bench_alignment.py
 """
 
 import time
-from statistics import median
+
+from timing import timed
 
 import limitsurf as ls
 
@@ -13,16 +14,6 @@ PARTS = (
     ("wheel_7_of_8", "resonator64", 50.0),
     ("nano_sim", "resonator128", 75.0),
 )
-
-
-def timed(call, repeats=5):
-    """Return the median time of a call [s] and its last result."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = call()
-        times.append(time.perf_counter() - start)
-    return median(times), result
 
 
 def main():

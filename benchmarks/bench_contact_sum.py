@@ -8,11 +8,11 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import time
-from statistics import median
 
 import clarabel
 import numpy as np
 from scipy import sparse
+from timing import timed
 
 from limitsurf.kernels.contact_sum import solve_contact_sum
 
@@ -54,16 +54,6 @@ def clarabel_program(x, y, m, c):
     A = sparse.csc_matrix(sparse.vstack([equal, picks]))
     cones = [clarabel.ZeroConeT(3)] + [clarabel.SecondOrderConeT(3)] * n
     return P, np.zeros(2 * n + 3), A, np.concatenate([c, radii]), cones
-
-
-def timed(call, repeats):
-    """Return the median time of a call [s] and its last result."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = call()
-        times.append(time.perf_counter() - start)
-    return median(times), result
 
 
 def main():

@@ -8,10 +8,10 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import time
-from statistics import median
 
 import numpy as np
 from scipy.spatial import ConvexHull
+from timing import timed
 
 from limitsurf.kernels.flat_polytope import flat_polytope
 from limitsurf.kernels.hull_polytope import hull_polytope
@@ -24,16 +24,6 @@ except ImportError:
     manifold3d = None
 
 AXES = (((1, 1, 1), (1, 1, 1)), ((1, 2, 0.5), (1, 1, 1)), ((1, 1, 5), (5, 1, 1)))
-
-
-def timed(call, repeats):
-    """Return the median time of a call [s] and its last result."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = call()
-        times.append(time.perf_counter() - start)
-    return median(times), result
 
 
 def ellipsoid(rng, facets, axes=(1, 1, 1)):
