@@ -146,7 +146,7 @@ class HPolytope(ConvexSet):
         inside = (active[:, 0] < 0) & (failed == 0)
         bound = facet_bounds(scaled, closest, A, b, active, multipliers)
         status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
-        status = np.where(failed != 0, Status.FAILED, status)
+        status = np.where((failed != 0) | np.isinf(bound), Status.FAILED, status)
         point = np.where(inside[:, None], points, metric.back(closest[:, : self.dim]))
         return Rows(point, bound, count, status, active)
 

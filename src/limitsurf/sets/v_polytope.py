@@ -167,11 +167,11 @@ class VPolytope(ConvexSet):
         corners = lifted(vertices)
         cells = self._cells if metric.identity else direction_cells(corners, self._graph)
         lifted_points = lifted(scaled)
-        closest, simplex, _, count, failed = closest_on_vertices(
+        closest, simplex, weights, count, failed = closest_on_vertices(
             lifted_points, corners, self._graph, cells
         )
         inside = simplex[:, 0] < 0
-        bound = vertex_bounds(lifted_points, closest, corners, self._graph, simplex)
+        bound = vertex_bounds(lifted_points, closest, corners, self._graph, simplex, weights)
         closest = closest[:, : self.dim]
         status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
         status = np.where(failed != 0, Status.FAILED, status)
