@@ -23,10 +23,12 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import ConvexHull
 
+from limitsurf.kernels.closest_on_vertices import closest_on_vertices
 from limitsurf.kernels.dual_active_set import closest_on_facets
-from limitsurf.kernels.gjk import closest_on_vertices
 from limitsurf.kernels.hill_climbing import direction_cells, vertex_graph
+from limitsurf.kernels.surface_walk import triangle_surface
 from limitsurf.sets.h_polytope import HPolytope
+from limitsurf.sets.hulls import convex_hull
 from limitsurf.sets.v_polytope import VPolytope
 
 BODIES = ((20, 1.0), (200, 1.0), (2000, 1.0), (20, 1e-6), (200, 1e-6), (2000, 1e-6))
@@ -89,9 +91,10 @@ def facets_kernel(body):
 
 
 def vertices_kernel(body):
-    graph = vertex_graph(len(body.V), body.triangles)
-    cells = direction_cells(body.V, graph)
-    return lambda points: closest_on_vertices(points, body.V, graph, cells)[0]
+    outwards = convex_hull(body.V).triangles
+    graph = vertex_graph(len(body.V), outwards)
+    cells, surface = direction_cells(body.V, graph), triangle_surface(outwards, graph)
+    return lambda points: closest_on_vertices(points, body.V, graph, cells, surface)[0]
 
 
 def one_by_one(call):

@@ -78,7 +78,7 @@ def relative_error(x, y, points, V):
 
 def assert_optimal(points, A, b, result, tol=TOL):
     """Check feasibility, and that the residual lies in the cone of facets that hold x."""
-    x, active, u, _, status = result
+    x, active, u, _, status, _ = result
     scale = np.maximum(np.linalg.norm(points, axis=1), np.abs(b).max())
     assert np.all(status == SOLVED)
     assert np.all(u >= 0)
@@ -117,7 +117,7 @@ def test_flat_bodies(rng, facets, flatness):
 def test_points_inside_stay_where_they_are(rng):
     V, _, A, b = random_hull(rng, 200)
     points = 0.9 * V
-    x, active, u, iterations, status = closest_on_facets(points, A, b)
+    x, active, u, iterations, status, _ = closest_on_facets(points, A, b)
     assert np.array_equal(x, points)
     assert np.all(active == -1)
     assert not u.any()

@@ -5,9 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
+from limitsurf.kernels.closest_on_vertices import closest_on_vertices
 from limitsurf.kernels.dual_active_set import SOLVED, closest_on_facets
-from limitsurf.kernels.gjk import closest_on_vertices
 from limitsurf.kernels.hill_climbing import direction_cells, support_vertices, vertex_graph
+from limitsurf.kernels.surface_walk import triangle_surface
 from tests.kernels.test_dual_active_set import (
     closest_by_force,
     points_outside,
@@ -19,9 +20,13 @@ TOL = 1e-15
 NO_TRIANGLES = np.empty((0, 3), dtype=int)
 
 
+NO_SURFACE = triangle_surface(NO_TRIANGLES, vertex_graph(0, NO_TRIANGLES))
+
+
 def closest(points, V, triangles=NO_TRIANGLES):
+    """Return what GJK finds; without a surface there is no walk."""
     graph = vertex_graph(len(V), triangles)
-    return closest_on_vertices(points, V, graph, direction_cells(V, graph))
+    return closest_on_vertices(points, V, graph, direction_cells(V, graph), NO_SURFACE)
 
 
 def all_triangles(V):
@@ -31,7 +36,7 @@ def all_triangles(V):
 
 def assert_optimal(points, V, result, tol=TOL):
     """Check that the weights give x, and that no vertex lies beyond x as seen from the point."""
-    x, simplex, w, _, status = result
+    x, simplex, w, _, status, _ = result
     size = np.maximum(np.linalg.norm(points, axis=1), np.linalg.norm(V, axis=1).max())
     assert np.all(status == SOLVED)
     assert np.all(w >= 0)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from limitsurf.kernels.closest_on_vertices import closest_on_vertices
 from limitsurf.kernels.dual_active_set import closest_on_facets
-from limitsurf.kernels.gjk import closest_on_vertices
 from limitsurf.kernels.hill_climbing import direction_cells, vertex_graph
-from limitsurf.kernels.polytope_bounds import common_facets, facet_bounds, vertex_bounds
+from limitsurf.kernels.polytope_bounds import facet_bound, vertex_bound
+from limitsurf.kernels.surface_walk import triangle_surface
 from limitsurf.sets.hulls import convex_hull
 
 
@@ -23,34 +24,56 @@ def body(rng):
 def by_vertices(vertices, hull, points):
     graph = vertex_graph(len(vertices), hull.triangles)
     cells = direction_cells(vertices, graph)
-    return graph, closest_on_vertices(points, vertices, graph, cells)
+    surface = triangle_surface(hull.triangles, graph)
+    return graph, closest_on_vertices(points, vertices, graph, cells, surface)
+
+
+def vertex_bounds(points, x, V, graph, simplex, weights):
+    largest = np.abs(V).max()
+    rows = zip(points, x, simplex, weights, strict=True)
+    return np.array(
+        [
+            vertex_bound(tuple(p), tuple(q), V, *graph, largest, s, int((s >= 0).sum()), w)
+            for p, q, s, w in rows
+        ]
+    )
+
+
+def facet_bounds(points, x, A, b, active, multipliers):
+    columns, largest = np.ascontiguousarray(A.T), np.abs(b).max()
+    rows = zip(points, x, active, multipliers, strict=True)
+    return np.array(
+        [facet_bound(tuple(p), tuple(q), A, columns, b, largest, a, u) for p, q, a, u in rows]
+    )
 
 
 def test_right_answers_get_bounds_of_rounding_size(rng):
     vertices, hull, points = body(rng)
-    graph, (x, simplex, weights, _, _) = by_vertices(vertices, hull, points)
-    assert vertex_bounds(points, x, vertices, graph, simplex, weights).max() < 1e-12
-    y, active, multipliers, _, _ = closest_on_facets(points, hull.normals, hull.offsets)
+    graph, (x, simplex, weights, _, _, found) = by_vertices(vertices, hull, points)
+    assert found.max() < 1e-12
+    assert vertex_bounds(points, x, vertices, graph, simplex, weights) == pytest.approx(found)
+    y, active, multipliers, _, _, found = closest_on_facets(points, hull.normals, hull.offsets)
     assert x == pytest.approx(y, abs=1e-12)
     bounds = facet_bounds(points, y, hull.normals, hull.offsets, active, multipliers)
-    assert bounds.max() < 1e-11
+    assert bounds == pytest.approx(found)
+    assert found.max() < 1e-11
 
 
 @pytest.mark.parametrize("shift", [1e-9, 1e-6, 1e-3, 0.3])
 def test_points_moved_off_keep_honest_bounds(rng, shift):
     vertices, hull, points = body(rng)
-    graph, (x, simplex, weights, _, _) = by_vertices(vertices, hull, points)
+    graph, (x, simplex, weights, *_) = by_vertices(vertices, hull, points)
     moved = x + shift * rng.normal(size=x.shape)
     error = np.linalg.norm(moved - x, axis=1)
     assert np.all(vertex_bounds(points, moved, vertices, graph, simplex, weights) >= error)
-    _, active, multipliers, _, _ = closest_on_facets(points, hull.normals, hull.offsets)
+    _, active, multipliers, *_ = closest_on_facets(points, hull.normals, hull.offsets)
     bounds = facet_bounds(points, moved, hull.normals, hull.offsets, active, multipliers)
     assert np.all(bounds >= error)
 
 
 def test_the_wrong_place_on_the_right_face(rng):
     vertices, hull, points = body(rng)
-    graph, (x, simplex, _, _, _) = by_vertices(vertices, hull, points)
+    graph, (x, simplex, *_) = by_vertices(vertices, hull, points)
     weights = np.where(simplex >= 0, rng.uniform(0.1, 1.0, size=simplex.shape), 0.0)
     weights /= weights.sum(axis=1, keepdims=True)
     wrong = np.einsum("kj,kji->ki", weights, vertices[simplex])
@@ -75,10 +98,3 @@ def test_a_facet_left_out_has_no_bound():
     p, wrong = np.array([[2.0, 2.0, 0.0]]), np.array([[1.0, 2.0, 0.0]])
     active, multipliers = np.array([[0, -1, -1]], np.int32), np.array([[1.0, 0.0, 0.0]])
     assert np.isinf(facet_bounds(p, wrong, A, b, active, multipliers)[0])
-
-
-def test_facets_common_to_vertices():
-    ptr, facets = np.array([0, 3, 6, 8], np.int32), np.array([0, 1, 2, 1, 2, 4, 2, 5], np.int32)
-    simplex = np.array([[0, 1, -1, -1], [0, 1, 2, -1], [-1] * 4], np.int32)
-    found = common_facets(simplex, ptr, facets)
-    assert found.tolist() == [[1, 2, -1], [2, -1, -1], [-1, -1, -1]]

@@ -22,20 +22,23 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
+from limitsurf.kernels.facet_scan import most_violated
+from limitsurf.kernels.polytope_bounds import facet_bound
 from limitsurf.kernels.vectors import Vector, along, cross, dot, row, transposed
 
 __all__ = [
     "INFEASIBLE",
     "NOT_CONVERGED",
     "SOLVED",
+    "Working",
+    "closest_by_facets",
     "closest_on_facets",
-    "most_violated",
+    "new_working_set",
 ]
 
 SOLVED, NOT_CONVERGED, INFEASIBLE = 0, 1, 2
 
 _EPS = float(np.finfo(np.float64).eps)
-_BLOCK = 64
 _MAX_ITERATIONS = 500
 _TOLERANCE = 4 * _EPS  # rounding of a.x - b, relative to |x| + |b|
 _PARALLEL = 1e-28  # |z|^2 of unit normals that depend on each other up to rounding
@@ -51,51 +54,15 @@ class Working(NamedTuple):
 
 
 @compiled
+def new_working_set() -> Working:
+    """Return room for three facets."""
+    return Working(np.empty(3, np.int32), np.empty(3), np.empty((3, 3)), np.empty(3))
+
+
+@compiled
 def _cross_units(a: Vector, b: Vector) -> Vector:
     """Return the vector product of unit vectors, exact too where they are nearly parallel."""
     return cross(along(a, -1.0 if dot(a, b) > 0.0 else 1.0, b), b)
-
-
-@compiled
-def _scan(columns: Floats, b: Floats, x: Vector, best: float) -> tuple[int, float]:
-    """Return the largest ``a_i x - b_i`` above `best` and its index, or -1."""
-    a0, a1, a2 = columns[0], columns[1], columns[2]
-    index = -1
-    for i in range(b.shape[0]):
-        violation = a0[i] * x[0] + a1[i] * x[1] + a2[i] * x[2] - b[i]
-        if violation > best:
-            best = violation
-            index = i
-    return index, best
-
-
-@compiled
-def _count_above(columns: Floats, b: Floats, x: Vector, best: float) -> int:
-    a0, a1, a2 = columns[0], columns[1], columns[2]
-    count = 0
-    for i in range(b.shape[0]):
-        count += a0[i] * x[0] + a1[i] * x[1] + a2[i] * x[2] - b[i] > best
-    return count
-
-
-@compiled
-def most_violated(columns: Floats, b: Floats, x: Vector, best: float) -> tuple[int, float]:
-    """Return ``(i, a_i x - b_i)`` of the largest violation above `best`; i = -1 if there is none.
-
-    `columns` (3, m) holds the coordinates of the normals one after the other. Counting is
-    vectorised, looking for the largest is not: only blocks that hold a larger one are looked
-    through.
-    """
-    m = b.shape[0]
-    if m <= 4 * _BLOCK:
-        return _scan(columns, b, x, best)
-    index = -1
-    for start in range(0, m, _BLOCK):
-        block, offsets = columns[:, start : start + _BLOCK], b[start : start + _BLOCK]
-        if _count_above(block, offsets, x, best) > 0:
-            i, best = _scan(block, offsets, x, best)
-            index = start + i
-    return index, best
 
 
 @compiled
@@ -188,7 +155,9 @@ def _size(x: Vector, offset: float) -> float:
 
 
 @compiled
-def _closest(p: Vector, columns: Floats, b: Floats, work: Working) -> tuple[Vector, int, int, int]:
+def closest_by_facets(
+    p: Vector, columns: Floats, b: Floats, work: Working
+) -> tuple[Vector, int, int, int]:
     """Return x, the number of facets in W (which is left in `work`), iterations and status."""
     x, k = p, 0
     for iteration in range(_MAX_ITERATIONS):
@@ -208,8 +177,8 @@ def _closest(p: Vector, columns: Floats, b: Floats, work: Working) -> tuple[Vect
 @compiled
 def closest_on_facets(
     points: Floats, A: Floats, b: Floats
-) -> tuple[Floats, Ints, Floats, Ints, Ints]:
-    """Return ``(closest, active, multipliers, iterations, status)`` for each of the points.
+) -> tuple[Floats, Ints, Floats, Ints, Ints, Floats]:
+    """Return ``(closest, active, multipliers, iterations, status, bound)`` for each of the points.
 
     Parameters
     ----------
@@ -230,6 +199,8 @@ def closest_on_facets(
         Facets added on the way.
     status : (k,) int32
         `SOLVED`, `NOT_CONVERGED` or `INFEASIBLE` (the polytope is empty).
+    bound : (k,) float
+        Certified errors of the closest points, see `facet_bound`.
     """
     n = points.shape[0]
     columns = transposed(A)
@@ -238,10 +209,13 @@ def closest_on_facets(
     multipliers = np.zeros((n, 3))
     iterations = np.empty(n, np.int32)
     status = np.empty(n, np.int32)
-    work = Working(np.empty(3, np.int32), np.empty(3), np.empty((3, 3)), np.empty(3))
+    bound = np.empty(n)
+    largest = np.abs(b).max() if b.shape[0] > 0 else 0.0
+    work = new_working_set()
     for i in range(n):
-        x, k, iterations[i], status[i] = _closest(row(points, i), columns, b, work)
+        x, k, iterations[i], status[i] = closest_by_facets(row(points, i), columns, b, work)
         closest[i, 0], closest[i, 1], closest[i, 2] = x
         for j in range(k):
             active[i, j], multipliers[i, j] = work.facets[j], work.u[j]
-    return closest, active, multipliers, iterations, status
+        bound[i] = facet_bound(row(points, i), x, A, columns, b, largest, active[i], multipliers[i])
+    return closest, active, multipliers, iterations, status, bound

@@ -23,7 +23,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
 from limitsurf.kernels.dual_active_set import NOT_CONVERGED, SOLVED
-from limitsurf.kernels.hill_climbing import Cells, Graph, Stretch, farthest_vertex
+from limitsurf.kernels.hill_climbing import Stretch, farthest_vertex
 from limitsurf.kernels.simplex import (
     closest_of_simplex,
     polish,
@@ -33,14 +33,14 @@ from limitsurf.kernels.simplex import (
 )
 from limitsurf.kernels.vectors import Vector, along, dot, row
 
-__all__ = ["closest_on_vertices"]
+__all__ = ["closest_by_gjk"]
 
 _EPS = float(np.finfo(np.float64).eps)
 _MAX_ITERATIONS = 200
 
 
 @compiled
-def _closest(
+def closest_by_gjk(
     p: Vector,
     V: Floats,
     ptr: Ints,
@@ -78,52 +78,3 @@ def _closest(
         if not dot(step, along(along(x_old, -2.0, p), 1.0, x)) > 0.0:  # no closer than before
             return polish(V, s, w, k, p), k, iteration + 1, SOLVED
     return x, k, _MAX_ITERATIONS, NOT_CONVERGED
-
-
-@compiled
-def closest_on_vertices(
-    points: Floats, V: Floats, graph: Graph, cells: Cells
-) -> tuple[Floats, Ints, Floats, Ints, Ints]:
-    """Return ``(closest, simplex, weights, iterations, status)`` for each of the points.
-
-    Parameters
-    ----------
-    points : (k, 3) float
-        Points to project.
-    V : (n, 3) float
-        Vertices, n >= 1; points inside their hull do no harm.
-    graph : Graph
-        Edges of the hull from `vertex_graph`.
-    cells : Cells
-        Start vertices from `direction_cells`.
-
-    Returns
-    -------
-    closest : (k, 3) float
-        Closest points; a point of the hull is returned as it is.
-    simplex : (k, 4) int32
-        Vertices that span the face with the closest point, then -1; all -1 in the hull.
-    weights : (k, 4) float
-        Their weights >= 0, with sum 1: ``closest = sum_j weights_j V[simplex_j]``.
-    iterations : (k,) int32
-        Vertices tried.
-    status : (k,) int32
-        `SOLVED` or `NOT_CONVERGED`.
-    """
-    n = points.shape[0]
-    closest = np.empty((n, 3))
-    simplex = np.full((n, 4), -1, np.int32)
-    weights = np.zeros((n, 4))
-    iterations = np.empty(n, np.int32)
-    status = np.empty(n, np.int32)
-    ptr, adj = graph
-    start = cells.start
-    s, w = np.empty(4, np.int32), np.empty(4)
-    for i in range(n):
-        x, k, iterations[i], status[i] = _closest(
-            row(points, i), V, ptr, adj, start, cells.stretch, cells.centre, cells.reach, s, w
-        )
-        closest[i, 0], closest[i, 1], closest[i, 2] = x
-        for j in range(k):
-            simplex[i, j], weights[i, j] = s[j], w[j]
-    return closest, simplex, weights, iterations, status

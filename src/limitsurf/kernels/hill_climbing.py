@@ -24,6 +24,7 @@ __all__ = [
     "direction_cells",
     "farthest_vertex",
     "highest_vertex",
+    "start_vertex",
     "support_vertices",
     "vertex_graph",
 ]
@@ -179,11 +180,17 @@ def direction_cells(V: Floats, graph: Graph) -> Cells:
 
 
 @compiled
+def start_vertex(start: Ints, L: Stretch, d: Vector) -> int:
+    """Return the vertex stored for the cell of the direction d."""
+    return int(start[_cell(start.shape[1], _stretched(L, d))])
+
+
+@compiled
 def farthest_vertex(V: Floats, ptr: Ints, adj: Ints, start: Ints, L: Stretch, d: Vector) -> int:
     """Return the vertex farthest along d."""
     if V.shape[0] <= _BRUTE or adj.shape[0] == 0:
         return highest_vertex(V, d)
-    return climb(V, ptr, adj, start[_cell(start.shape[1], _stretched(L, d))], d)
+    return climb(V, ptr, adj, start_vertex(start, L, d), d)
 
 
 @compiled

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -71,6 +72,11 @@ class Metric:
             return points
         return np.asarray(np.linalg.solve(self.C, points.T).T, dtype=np.float64)
 
+    def unlifted(self, closest: Array, points: Array, inside: NDArray[np.bool_]) -> Array:
+        """Return what a kernel found in `lifted` coordinates; points inside as they were."""
+        found = self.back(closest[:, : points.shape[1]])
+        return found if self.identity else np.where(inside[:, None], points, found)
+
 
 def read_metric(metric: ArrayLike | None, dim: int) -> Metric:
     """Return a metric given as a matrix, as its diagonal, or None for the identity.
@@ -81,7 +87,7 @@ def read_metric(metric: ArrayLike | None, dim: int) -> Metric:
         Wrong shape, not symmetric, or not positive definite.
     """
     if metric is None:
-        return Metric(np.eye(dim), np.eye(dim), identity=True)
+        return _identity(dim)
     matrix = np.asarray(metric, dtype=np.float64)
     matrix = np.diag(matrix) if matrix.ndim == 1 else matrix
     if matrix.shape != (dim, dim):
@@ -93,6 +99,11 @@ def read_metric(metric: ArrayLike | None, dim: int) -> Metric:
     except np.linalg.LinAlgError as error:
         raise InputError("metric", "is not positive definite") from error
     return Metric(matrix, factor, identity=bool(np.array_equal(matrix, np.eye(dim))))
+
+
+@cache
+def _identity(dim: int) -> Metric:
+    return Metric(np.eye(dim), np.eye(dim), identity=True)
 
 
 def lifted(points: Array) -> Array:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.conic.form import ConicForm, constraints
 from limitsurf.conic.solve import conic_distance, conic_projection, conic_support
 from limitsurf.errors import InputError, SolveFailed
+from limitsurf.kernels.residuals import residuals
 from limitsurf.sets.arguments import Metric, as_points, read_metric
 from limitsurf.sets.mesh import hull_mesh, sphere_directions
 from limitsurf.sets.projection import Projection, Status
@@ -119,16 +120,8 @@ class ConvexSet(ABC):
         points, shape = as_points("p", p, self.dim)
         W = read_metric(metric, self.dim)
         rows = self._project(points, W)
-        failed = rows.status == Status.FAILED
-        e = points - rows.point
-        scaled = W.into(e)
-        distance = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
         inside = rows.status == Status.INSIDE
-        distance[inside] = 0.0
-        normal = e if W.identity else e @ W.W
-        length = distance if W.identity else np.linalg.norm(normal, axis=1)
-        normal = normal / np.where(length > 0.0, length, 1.0)[:, None]
-        normal[inside] = 0.0
+        distance, normal = residuals(points, rows.point, W.W, inside)
         projection = Projection(
             point=rows.point.reshape(*shape, self.dim),
             distance=distance.reshape(shape),
@@ -138,9 +131,9 @@ class ConvexSet(ABC):
             status=rows.status.reshape(shape),
             active=_reshaped(rows.active, shape),
         )
-        if throw and failed.any():
+        if throw and (failed := int((rows.status == Status.FAILED).sum())):
             raise SolveFailed(
-                f"project: {int(failed.sum())} of {len(points)} points {Status.FAILED!s}",
+                f"project: {failed} of {len(points)} points {Status.FAILED!s}",
                 best=projection,
             )
         return projection

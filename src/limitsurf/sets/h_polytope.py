@@ -12,7 +12,7 @@ from scipy import sparse
 from limitsurf.conic.form import Cone, ConicForm
 from limitsurf.errors import InputError
 from limitsurf.kernels.dual_active_set import closest_on_facets
-from limitsurf.kernels.polytope_bounds import common_facets, facet_bounds
+from limitsurf.kernels.holding_facets import holding_facets
 from limitsurf.sets.arguments import Metric, as_array, lifted
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.hulls import chebyshev_center, is_bounded, vertices_of
@@ -24,7 +24,7 @@ __all__ = ["HPolytope"]
 Array = NDArray[np.float64]
 
 _TIGHT = 1e-9  # slack of a facet at a vertex, relative to the size, that Qhull may leave
-_MANY = 300  # facets from which climbing over vertices beats scanning facets
+_MANY = 16  # facets from which walking over the vertex form beats scanning facets
 
 
 class HPolytope(ConvexSet):
@@ -134,21 +134,19 @@ class HPolytope(ConvexSet):
     def _project(self, points: Array, metric: Metric) -> Rows:
         if self.dim > 3:
             return super()._project(points, metric)
+        A, b = self._unit_facets(metric)
         if self._flat or (len(self._b) > _MANY and self.bounded):
             rows = self.to_v()._project(points, metric)
-            assert rows.active is not None
-            simplex = rows.active.astype(np.int32)
-            facets = common_facets(simplex, *self._facets_of_vertices)
-            return replace(rows, active=facets)
-        A, b = self._unit_facets(metric)
-        scaled = lifted(metric.into(points))
-        closest, active, multipliers, count, failed = closest_on_facets(scaled, A, b)
-        inside = (active[:, 0] < 0) & (failed == 0)
-        bound = facet_bounds(scaled, closest, A, b, active, multipliers)
-        status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
-        status = np.where((failed != 0) | np.isinf(bound), Status.FAILED, status)
-        point = np.where(inside[:, None], points, metric.back(closest[:, : self.dim]))
-        return Rows(point, bound, count, status, active)
+            around = self._facets_of_vertices
+            simplex = np.asarray(rows.active, dtype=np.int32)
+            held = holding_facets(lifted(metric.into(points)), simplex, A, b, *around)
+            return replace(rows, active=held)
+        closest, active, _, count, failed, bound = closest_on_facets(
+            lifted(metric.into(points)), A, b
+        )
+        inside = active[:, 0] < 0
+        status = np.where((failed != 0) | np.isinf(bound), Status.FAILED, inside)  # True is INSIDE
+        return Rows(metric.unlifted(closest, points, inside), bound, count, status, active)
 
     @cached_property
     def _facets_of_vertices(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

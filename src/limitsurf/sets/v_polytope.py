@@ -11,7 +11,7 @@ from scipy import sparse
 
 from limitsurf.conic.form import Cone, ConicForm
 from limitsurf.errors import InputError
-from limitsurf.kernels.gjk import closest_on_vertices
+from limitsurf.kernels.closest_on_vertices import closest_on_vertices
 from limitsurf.kernels.hill_climbing import (
     Cells,
     Graph,
@@ -20,7 +20,7 @@ from limitsurf.kernels.hill_climbing import (
 )
 from limitsurf.kernels.hull_polytope import hull_polytope
 from limitsurf.kernels.normal_fan import Polytope, triangles
-from limitsurf.kernels.polytope_bounds import vertex_bounds
+from limitsurf.kernels.surface_walk import Surface, triangle_surface
 from limitsurf.sets.arguments import Metric, as_array, lifted
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.hulls import Hull, convex_hull
@@ -157,32 +157,27 @@ class VPolytope(ConvexSet):
         return vertex_graph(len(self._vertices), self._hull.triangles)
 
     @cached_property
-    def _cells(self) -> Cells:
-        return direction_cells(lifted(self._vertices), self._graph)
+    def _surface(self) -> Surface:
+        return triangle_surface(self._hull.triangles, self._graph)
+
+    @cached_property
+    def _kernel_data(self) -> tuple[Array, Cells]:
+        corners = lifted(self._vertices)
+        return corners, direction_cells(corners, self._graph)
 
     def _project(self, points: Array, metric: Metric) -> Rows:
         if self.dim > 3:
             return super()._project(points, metric)
-        scaled, vertices = metric.into(points), metric.into(self._vertices)
-        corners = lifted(vertices)
-        cells = self._cells if metric.identity else direction_cells(corners, self._graph)
-        lifted_points = lifted(scaled)
-        closest, simplex, weights, count, failed = closest_on_vertices(
-            lifted_points, corners, self._graph, cells
+        corners, cells = self._kernel_data
+        if not metric.identity:
+            corners = lifted(metric.into(self._vertices))
+            cells = direction_cells(corners, self._graph)
+        closest, simplex, _, count, failed, bound = closest_on_vertices(
+            lifted(metric.into(points)), corners, self._graph, cells, self._surface
         )
         inside = simplex[:, 0] < 0
-        bound = vertex_bounds(lifted_points, closest, corners, self._graph, simplex, weights)
-        closest = closest[:, : self.dim]
-        status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
-        status = np.where(failed != 0, Status.FAILED, status)
-        point = np.where(inside[:, None], points, metric.back(closest))
-        return Rows(
-            point,
-            bound,
-            count,
-            status,
-            simplex,
-        )
+        status = np.where(failed != 0, Status.FAILED, inside)  # True is INSIDE
+        return Rows(metric.unlifted(closest, points, inside), bound, count, status, simplex)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
         if self.dim > 3:
