@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Bools, Floats, Ints, compiled
+from limitsurf.kernels.row_spans import row_crossings
 
 __all__ = ["Cover", "Lattice", "covered_sites", "new_cover"]
 
@@ -49,23 +50,6 @@ def new_cover(active: Bools) -> Cover:
 
 
 @compiled
-def _row_spans(edges: Floats, y: float, xs: Floats) -> int:
-    """Fill `xs` with the sorted abscissae where the outline crosses the height y; return count."""
-    count = 0
-    for i in range(edges.shape[0]):
-        y0, y1 = edges[i, 1], edges[i, 3]
-        if (y0 <= y) != (y1 <= y):
-            crossing = edges[i, 0] + (edges[i, 2] - edges[i, 0]) * (y - y0) / (y1 - y0)
-            j = count
-            while j > 0 and xs[j - 1] > crossing:
-                xs[j] = xs[j - 1]
-                j -= 1
-            xs[j] = crossing
-            count += 1
-    return count
-
-
-@compiled
 def _first(position: float, origin: float, pitch: float) -> int:
     return max(math.ceil((position - origin) / pitch), 0)
 
@@ -98,16 +82,13 @@ def covered_sites(edges: Floats, lattice: Lattice, cover: Cover) -> int:
         Receives the list in the first entries of `rows`, `columns`, `share`.
     """
     n_rows, n_columns = lattice.active.shape
-    xs = np.empty(edges.shape[0])
-    bottom, top = np.inf, -np.inf
-    for i in range(edges.shape[0]):
-        bottom = min(bottom, edges[i, 1], edges[i, 3])
-        top = max(top, edges[i, 1], edges[i, 3])
     count = 0
     x0, y0, pitch = lattice.origin_x, lattice.origin_y, lattice.pitch
-    for r in range(_first(bottom, y0, pitch), _last(top, y0, pitch, n_rows) + 1):
-        crossings = _row_spans(edges, y0 + pitch * r, xs)
-        for k in range(0, crossings - 1, 2):
+    crossings = row_crossings(edges, y0, pitch, n_rows)
+    first_row, offsets, xs = crossings.first_row, crossings.offsets, crossings.x
+    for row in range(offsets.shape[0] - 1):
+        r = first_row + row
+        for k in range(offsets[row], offsets[row + 1] - 1, 2):
             for c in range(_first(xs[k], x0, pitch), _last(xs[k + 1], x0, pitch, n_columns) + 1):
                 if lattice.active[r, c]:
                     _append(cover, count, r, c, 1.0)
