@@ -8,7 +8,15 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["ANGLE", "CONTACT_SUM", "FLATTEN", "FLAT_MOMENT", "LINE_MARGIN", "REST_SPEED"]
+__all__ = [
+    "ANGLE",
+    "CONTACT_STEP",
+    "CONTACT_SUM",
+    "FLATTEN",
+    "FLAT_MOMENT",
+    "LINE_MARGIN",
+    "REST_SPEED",
+]
 
 #: Two orientations closer than this are one. Simple roots of U' are found to about 1e-15;
 #: a double root, which rounding splits, comes apart by the square root of that.
@@ -18,7 +26,10 @@ ANGLE: Final = 1e-9
 FLAT_MOMENT: Final = 2e-15
 
 #: Error bound that a projection on a sum of contacts must certify, relative to sum m_i + |c|.
-CONTACT_SUM: Final = 1e-9
+CONTACT_SUM: Final = 1e-12
+
+#: The same for the steps of a simulation, whose own errors are larger.
+CONTACT_STEP: Final = 1e-9
 
 #: Chord error when curves of a drawing become polygons, relative to the drawing's diagonal.
 FLATTEN: Final = 2e-4

@@ -1,4 +1,4 @@
-r"""What is left between points and their closest points: distances and outer normals."""
+r"""What is left between points and their closest points: distances, outer normals, twists."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ["residuals"]
 @compiled
 def residuals(
     points: Floats, closest: Floats, W: Floats, inside: NDArray[np.bool_]
-) -> tuple[Floats, Floats]:
-    r"""Return the distances and unit outer normals of points p with closest points x.
+) -> tuple[Floats, Floats, Floats]:
+    r"""Return distances, unit outer normals and twists of points p with closest points x.
 
-    .. math:: \sqrt{e^T W e}, \quad W e / |W e|, \qquad e = p - x
+    .. math:: \sqrt{e^T W e}, \quad W e / |W e|, \quad -W e, \qquad e = p - x
 
     Parameters
     ----------
@@ -27,21 +27,23 @@ def residuals(
     W : (n, n) float
         The metric.
     inside : (k,) bool
-        Points with distance 0 and no normal.
+        Points with distance 0 and neither normal nor twist.
     """
     k, n = points.shape
-    distance, normal = np.zeros(k), np.zeros((k, n))
+    distance, normal, twist = np.zeros(k), np.zeros((k, n)), np.zeros((k, n))
     for i in range(k):
         if inside[i]:
             continue
         square, length2 = 0.0, 0.0
         for a in range(n):
+            pull = 0.0
             for b in range(n):
-                normal[i, a] += W[a, b] * (points[i, b] - closest[i, b])
-            square += normal[i, a] * (points[i, a] - closest[i, a])
-            length2 += normal[i, a] * normal[i, a]
+                pull += W[a, b] * (points[i, b] - closest[i, b])
+            normal[i, a], twist[i, a] = pull, -pull
+            square += pull * (points[i, a] - closest[i, a])
+            length2 += pull * pull
         distance[i] = math.sqrt(max(square, 0.0))
         if length2 > 0.0:
             for a in range(n):
                 normal[i, a] /= math.sqrt(length2)
-    return distance, normal
+    return distance, normal, twist

@@ -20,12 +20,25 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.contact_pass import BLOCK, Contacts, new_table
+from limitsurf.kernels.contact_problem import (
+    BOUND,
+    EPS,
+    LOAD,
+    TWIST,
+    WITNESS,
+    Problem,
+    new_best,
+    new_setting,
+    second_moments,
+)
 from limitsurf.kernels.contact_sum import solve_contact_sum
 from limitsurf.kernels.lattice import Cover, Lattice, covered_sites, new_cover
 
 __all__ = ["LEFT_ARRAY", "NOT_LIFTED", "REST", "TIME_LIMIT", "Body", "Ground", "slide"]
 
 TIME_LIMIT, REST, LEFT_ARRAY, NOT_LIFTED = 0, 1, 2, 3
+_IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Body(NamedTuple):
@@ -59,11 +72,11 @@ class Step(NamedTuple):
     """What a step computes: loads of the contacts, tips' scaled positions and friction radii."""
 
     edges: Floats
-    x: Floats
-    y: Floats
-    radius: Floats
+    data: Floats
     load: Floats
-    guess: Floats
+    best: Floats
+    table: Floats
+    none: Floats
 
 
 @compiled
@@ -144,11 +157,11 @@ def slide(
     sites = cover.share.size
     work = Step(
         np.empty_like(body.edges),
-        np.empty(sites),
-        np.empty(sites),
-        np.empty(sites),
+        np.empty(3 * sites),
         np.zeros(3),
-        np.zeros(3),
+        new_best(),
+        new_table(sites),
+        np.empty((0, 2)),
     )
     worst = heaviest = bound = 0.0
     step = written = 0
@@ -213,15 +226,24 @@ def _solve(
     momentum = body.mass * twist / dt
     scaled = work.load + momentum
     scaled[2] /= rho
-    solution, friction, bound, sticks, _ = solve_contact_sum(
-        work.x[:count], work.y[:count], work.radius[:count], scaled, work.guess, tol
-    )
-    work.guess[:] = solution
-    twist[:] = solution / quadratic[0]
+    best = work.best
+    contacts = Contacts(work.data[: 3 * count].reshape(3, count), 1)
+    table = work.table[: -(-count // BLOCK) + 1]
+    c = scaled[0], scaled[1], scaled[2]
+    setting = new_setting(count, second_moments(contacts), _IDENTITY, c, 1.0, tol)
+    v = best[WITNESS], best[WITNESS + 1], best[WITNESS + 2]
+    solve_contact_sum(Problem(contacts, table, setting), best, v, best[EPS], work.none)
+    twist[:] = 0.0
+    sticks = True
+    for k in range(3):
+        sticks = sticks and best[TWIST + k] == 0.0
+    if not sticks:
+        twist[:] = (scaled - best[LOAD : LOAD + 3]) / quadratic[0]
     twist[2] /= rho
+    friction = -best[LOAD : LOAD + 3]
     friction[2] *= rho
     work.load[:] += friction
-    return sticks and not np.any(momentum), bound
+    return sticks and not np.any(momentum), best[BOUND] + setting.rounding
 
 
 @compiled
@@ -247,5 +269,5 @@ def _sum_contacts(
         work.load[0] += fx
         work.load[1] += fy
         work.load[2] += rx * fy - ry * fx
-        work.x[i], work.y[i] = rx / rho, ry / rho
-        work.radius[i] = ground.grip * carried
+        work.data[i], work.data[count + i] = rx / rho, ry / rho
+        work.data[2 * count + i] = ground.grip * carried

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
 
-__all__ = ["Vector", "along", "cross", "dot", "row", "transposed"]
+__all__ = ["Vector", "along", "cross", "dot", "length", "row", "scaled", "transposed"]
 
 Vector = tuple[float, float, float]
 
@@ -42,3 +44,15 @@ def cross(a: Vector, b: Vector) -> Vector:
 def along(a: Vector, t: float, b: Vector) -> Vector:
     """Return ``a + t b``."""
     return a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]
+
+
+@compiled
+def scaled(t: float, a: Vector) -> Vector:
+    """Return ``t a``."""
+    return t * a[0], t * a[1], t * a[2]
+
+
+@compiled
+def length(x: float, y: float) -> float:
+    """Return ``|(x, y)|`` of numbers of ordinary size (`math.hypot` guards against overflow)."""
+    return math.sqrt(x * x + y * y)

@@ -17,7 +17,7 @@ from limitsurf.kernels.lattice import Lattice
 from limitsurf.kernels.slide import Body, Ground, slide
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.trajectory import Outcome, Trajectory
-from limitsurf.tolerances import CONTACT_SUM, REST_SPEED
+from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
 __all__ = ["Mode", "TimeScales", "check_lift", "simulate", "time_scales"]
 
@@ -144,7 +144,7 @@ def simulate(
         dt,
         steps,
         stride,
-        CONTACT_SUM,
+        CONTACT_STEP,
         REST_SPEED * scales.speed,
         rows,
     )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 
-__all__ = ["Metric", "as_array", "as_points", "lifted", "read_metric"]
+__all__ = ["Metric", "as_array", "as_points", "as_rows", "lifted", "read_metric"]
 
 Array = NDArray[np.float64]
 
@@ -42,16 +42,24 @@ def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
 
 
 def as_points(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ...]]:
-    """Return points (..., dim) as rows (k, dim), with the leading shape."""
+    """Return finite points (..., dim) as rows (k, dim), with the leading shape."""
+    rows, shape = as_rows(name, value, dim)
+    if not np.isfinite(rows).all():
+        raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
+    return rows, shape
+
+
+def as_rows(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ...]]:
+    """Return points (..., dim), perhaps not finite, as rows (k, dim), with the leading shape."""
     try:
         points = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError(name, "is no array of numbers", remedy="check its entries") from error
     if points.ndim == 0 or points.shape[-1] != dim:
         raise InputError(name, f"has shape {points.shape}, not (..., {dim})")
-    if not np.isfinite(points).all():
-        raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
-    return np.ascontiguousarray(points.reshape(-1, dim)), points.shape[:-1]
+    rows = np.ascontiguousarray(points.reshape(-1, dim))
+    # kernels are compiled anew for read-only arrays
+    return rows if rows.flags.writeable else rows.copy(), points.shape[:-1]
 
 
 @dataclass(frozen=True, eq=False)

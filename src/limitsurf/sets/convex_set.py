@@ -121,11 +121,12 @@ class ConvexSet(ABC):
         W = read_metric(metric, self.dim)
         rows = self._project(points, W)
         inside = rows.status == Status.INSIDE
-        distance, normal = residuals(points, rows.point, W.W, inside)
+        distance, normal, twist = residuals(points, rows.point, W.W, inside)
         projection = Projection(
             point=rows.point.reshape(*shape, self.dim),
             distance=distance.reshape(shape),
             normal=normal.reshape(*shape, self.dim),
+            twist=twist.reshape(*shape, self.dim),
             error_bound=rows.error_bound.reshape(shape),
             iterations=rows.iterations.reshape(shape),
             status=rows.status.reshape(shape),

@@ -20,6 +20,7 @@ class Status(IntEnum):
     OUTSIDE = 0
     INSIDE = 1
     FAILED = 2
+    LOOSE = 3
 
     def __str__(self) -> str:
         """Return the status in words."""
@@ -27,6 +28,7 @@ class Status(IntEnum):
             "solved, the point lies outside",
             "solved, the point lies in the set",
             "not solved to tolerance: scale the set to size 1, or use a metric closer to its shape",
+            "solved, but the certified error is above the tolerance asked for: see error_bound",
         )[int(self)]
 
 
@@ -42,6 +44,9 @@ class Projection:
         Distance, in the norm of the metric.
     normal : (..., n) float
         Unit outer normal ``W (p - point)``, zeros for points inside.
+    twist : (..., n) float
+        ``W (point - p)``, zeros for points inside: with loads, the twist of a part on which the
+        external load ``-p`` acts, up to the unit of time in W.
     error_bound : (...,) float
         Certified distance to the true closest point, in the norm of the metric.
     iterations : (...,) int
@@ -56,6 +61,7 @@ class Projection:
     point: Array
     distance: Array
     normal: Array
+    twist: Array
     error_bound: Array
     iterations: NDArray[np.integer[Any]]
     status: NDArray[np.integer[Any]]

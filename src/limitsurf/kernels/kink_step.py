@@ -1,0 +1,114 @@
+r"""One Newton step past a kink: a quadratic model plus one contact, exactly.
+
+.. math:: \min_d\; \tfrac12 d^T B d + b^T d + m\,|u + P^T d|, \qquad P = G S \in R^{3 \times 2}.
+
+Optimality: :math:`B d = -(b + m P f)` with :math:`|f| \le 1`, and :math:`f = p/|p|` unless
+:math:`p = u + P^T d = 0`. With :math:`K = m P^T B^{-1} P` and :math:`q = u - P^T B^{-1} b`,
+:math:`p = q - K f`. So p = 0 if :math:`|K^{-1} q| \le 1`; else :math:`(\sigma I + K) f = q` with
+:math:`|f| = 1` and :math:`\sigma = |p|`, a secular equation in the plane (More and
+Sorensen, SIAM J. Sci. Stat. Comput. 4, 1983).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from limitsurf.kernels.compile import compiled
+from limitsurf.kernels.contact_pass import Kink
+from limitsurf.kernels.symmetric3 import Symmetric, factored, solve
+from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
+
+__all__ = ["Pair", "kink_columns", "kink_force_in_plane", "kink_step", "snapped", "step_of_solved"]
+
+Pair = tuple[float, float]
+
+_EPS = float(np.finfo(np.float64).eps)
+
+
+@compiled
+def kink_columns(kink: Kink) -> tuple[Vector, Vector]:
+    """Return the columns of ``P = G S``: loads of unit forces."""
+    a, b, d = kink.stretch
+    x, y = kink.x, kink.y
+    return (a, b, x * b - y * a), (b, d, x * d - y * b)
+
+
+@compiled
+def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
+    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, for ``|K^-1 q| > 1``."""
+    mean, half = 0.5 * (k00 + k11), 0.5 * (k00 - k11)
+    spread = length(half, k01)
+    high, low = mean + spread, max(mean - spread, 0.0)
+    cos, sin = 1.0, 0.0
+    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
+        cos, sin = (spread + half, k01) if half >= 0.0 else (k01, spread - half)
+        size = length(cos, sin)
+        cos, sin = cos / size, sin / size
+    a, b = cos * q[0] + sin * q[1], cos * q[1] - sin * q[0]  # in the axes of K
+    left, right = max(abs(a) - high, abs(b) - low, 0.0), length(a, b)
+    sigma = left
+    for _ in range(60):
+        fa, fb = a / (sigma + high), b / (sigma + low)
+        square = fa * fa + fb * fb
+        norm = math.sqrt(square)
+        if norm > 1.0:
+            left = sigma
+        else:
+            right = sigma
+        step = sigma + (norm - 1.0) * square / (fa * fa / (sigma + high) + fb * fb / (sigma + low))
+        if not left <= step <= right:
+            step = 0.5 * (left + right)
+        if abs(step - sigma) <= 2.0 * _EPS * step:
+            break
+        sigma = step
+    fa, fb = a / (sigma + high), b / (sigma + low)
+    norm = length(fa, fb)
+    return (cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm
+
+
+@compiled
+def kink_force_in_plane(k00: float, k01: float, k11: float, q: Pair) -> tuple[Pair, bool]:
+    """Return the force f in the unit disk, and whether the contact stands still (p = 0)."""
+    det = k00 * k11 - k01 * k01
+    if det > 0.0:
+        f = (k11 * q[0] - k01 * q[1]) / det, (k00 * q[1] - k01 * q[0]) / det
+        if f[0] * f[0] + f[1] * f[1] <= 1.0:
+            return f, True
+    if q[0] == 0.0 and q[1] == 0.0:
+        return (0.0, 0.0), True
+    return _secular_force(k00, k01, k11, q), False
+
+
+@compiled
+def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
+    """Return whether B is positive definite, the step d, the force f, and whether p = 0."""
+    ok, L = factored(B)
+    if not ok:
+        return False, b, (0.0, 0.0), False
+    z = solve(B, L, b)
+    if kink.contact < 0:
+        return True, scaled(-1.0, z), (0.0, 0.0), False
+    one, two = kink_columns(kink)
+    d, f, still = step_of_solved(z, solve(B, L, one), solve(B, L, two), kink, u)
+    return True, d, f, still
+
+
+@compiled
+def step_of_solved(
+    z: Vector, k1: Vector, k2: Vector, kink: Kink, u: Pair
+) -> tuple[Vector, Pair, bool]:
+    """Return step, force and whether p = 0, given ``z = B^-1 b`` and ``B^-1 P``."""
+    one, two = kink_columns(kink)
+    m = kink.mass
+    q = u[0] - dot(one, z), u[1] - dot(two, z)
+    f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q)
+    return along(along(scaled(-1.0, z), -m * f[0], k1), -m * f[1], k2), f, still
+
+
+@compiled
+def snapped(kink: Kink, v: Vector) -> Vector:
+    """Return the twist about the kink nearest to v."""
+    w = (v[0] * kink.y - v[1] * kink.x + v[2]) / (1.0 + kink.x * kink.x + kink.y * kink.y)
+    return w * kink.y, -w * kink.x, w
