@@ -117,8 +117,8 @@ def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
     Raises
     ------
     SolveFailed
-        If the facets do not close up to within 1e-9 of the size, and there are too many vertex
-        sums (a million) for their hull: many facets parallel to within 1e-13 to 1e-10, but not less.
+        If the facets do not close up to within 1e-9 of the size, and the vertex sums are too many
+        (a million) for a hull: many facets parallel to within 1e-13 to 1e-10, but not less.
 
     Examples
     --------
