@@ -42,10 +42,11 @@ __all__ = ["add_polygon", "minkowski_sum", "minkowski_sum_of_all", "zonotope"]
 _SPINS = ((0.5427, 0.3711, 0.7535), (-0.6613, 0.7193, 0.2128), (0.2387, -0.8231, 0.5154))
 _FACTORS = (1.0, 1.0, 30.0, 1e-3, 1000.0)
 
-#: Certified error, relative to the size of the sum, with which an attempt is good, and the worst
-#: that is accepted when no attempt is. Only sums with facets that are parallel to within 1e-13 to
-#: 1e-10 need more than one attempt. If all fail and there are few vertex sums, their hull it is.
+#: Certified error, relative to the size of the sum, with which an attempt is good, the worst that
+#: is accepted when no attempt is, and when there are too many vertex sums for a hull. Only sums
+#: with facets that are parallel to within 1e-13 to 1e-10 need more than one attempt.
 _GOOD = 4e-12
+_FAIR = 1e-10
 _BAD = 1e-9
 _FEW = 1_000_000
 
@@ -142,7 +143,8 @@ def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
     thin = min(1.0, 10.0 * float(extents[2] / extents[0]))
     if thin > _THIN or not few:
         best, least = _best_overlay(p, q, noise, thin)
-        if least <= thin * (_BAD * float(extents[0]) + 4 * sum(noise)):
+        worst = _FAIR if few else _BAD
+        if least <= thin * (worst * float(extents[0]) + 4 * sum(noise)):
             return best
     if few:
         with contextlib.suppress(InputError, QhullError):
