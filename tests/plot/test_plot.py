@@ -11,6 +11,7 @@ from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.turn_function import turn_function
 from limitsurf.planning.verification import verify_alignment
 from limitsurf.sets.minkowski_sum import MinkowskiSum
+from tests.sets.specimens import SPECIMENS
 
 
 @pytest.fixture(scope="module")
@@ -93,17 +94,64 @@ def test_animation_colours_pixels_by_their_push(verification):
     assert np.all(pushes[:32] == 2)
 
 
+def drawn(trace):
+    return np.column_stack([trace.x, trace.y, trace.z])
+
+
 def test_the_bar_of_figures_8_and_9():
-    """Two disks tilted by 45 degrees, and their sum: from -2 to 2 along every axis."""
+    """Two disks tilted by 45 degrees, and their sum: as wide as its support function everywhere."""
     contacts = [coulomb_contact([x, 0.0], 1.0) for x in (1.0, -1.0)]
-    figure = plot.draw_limit_surface(*contacts, names=("at (1, 0)", "at (-1, 0)"))
-    for sheet, slope in zip(figure.data, (1.0, -1.0), strict=True):
-        assert np.array(sheet.z) == pytest.approx(slope * np.array(sheet.y), abs=1e-9)
-    (surface,) = plot.draw_limit_surface(MinkowskiSum(*contacts)).data
-    for axis in (surface.x, surface.y, surface.z):
-        assert np.ptp(axis) == pytest.approx(4.0, abs=0.02)
-    titles = plot.draw_limit_surface(contacts[0]).layout.scene
-    assert "[N]" in titles.xaxis.title.text
-    assert "[N m]" in titles.zaxis.title.text
+    bar = MinkowskiSum(*contacts)
+    figure = plot.draw_limit_surface(*contacts, bar, names=("at (1, 0)", "at (-1, 0)", "bar"))
+    assert [t.name for t in figure.data] == ["at (1, 0)", "at (-1, 0)", "bar"]
+    for sheet, slope in zip(figure.data[:2], (1.0, -1.0), strict=True):
+        assert drawn(sheet)[:, 2] == pytest.approx(slope * drawn(sheet)[:, 1], abs=1e-9)
+        assert np.ptp(drawn(sheet), axis=0) == pytest.approx([2.0, 2.0, 2.0], abs=1e-4)
+    surface = drawn(figure.data[2])
+    directions = np.random.default_rng(3).normal(size=(500, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    for d in (np.vstack([np.eye(3), -np.eye(3)]), directions):
+        reach = (d @ surface.T).max(axis=1)
+        assert np.all(reach <= bar.support(d) + 1e-12)  # nothing is drawn outside
+        assert reach == pytest.approx(bar.support(d), abs=6e-3)
+    # where both disks hold the load, a ridge: no vertex of the mesh is farther than its ends
+    assert surface[:, 0].max() == pytest.approx(2.0, abs=2e-3)
+    axes = figure.layout.scene
+    assert [axes.xaxis.title.text, axes.yaxis.title.text, axes.zaxis.title.text] == [
+        "F<sub>x</sub> [N]",
+        "F<sub>y</sub> [N]",
+        "M [N m]",
+    ]
+    assert axes.aspectmode == "data"
+
+
+def test_the_mesh_of_the_bar_is_closed_and_outward():
+    """Volume of a sum of flat sets: area of each times the width of the other across it."""
+    bar = MinkowskiSum(coulomb_contact([1.0, 0.0], 1.0), coulomb_contact([-1.0, 0.0], 1.0))
+    (mesh,) = plot.draw_limit_surface(bar).data
+    corners = drawn(mesh)[np.column_stack([mesh.i, mesh.j, mesh.k])]
+    volume = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    exact = 2 * (np.pi * np.sqrt(2)) * (2 * np.sqrt(2))
+    assert volume == pytest.approx(exact, rel=5e-3)
+    assert volume < exact
+
+
+@pytest.mark.parametrize("name", [name for name, S in SPECIMENS.items() if S.dim == 3])
+def test_every_set_can_be_drawn(name):
+    """Solids, sheets, segments and points, each as large as its support function says."""
+    S = SPECIMENS[name]
+    (trace,) = plot.draw_limit_surface(S).data
+    flat = name in ("point", "segment", "vertex point", "vertex segment", "no generators")
+    assert trace.type == ("scatter3d" if flat else "mesh3d")
+    d = np.vstack([np.eye(3), -np.eye(3)])
+    reach, h = (d @ drawn(trace).T).max(axis=1), S.support(d)
+    size = np.abs(h + np.roll(h, 3)).max()
+    assert np.all(reach <= h + 1e-9 * np.abs(h).max())
+    assert reach == pytest.approx(h, abs=6e-3 * size + 1e-9)
+
+
+def test_there_is_something_to_draw():
     with pytest.raises(InputError, match="surfaces"):
         plot.draw_limit_surface()
+    with pytest.raises(InputError, match="meshes need 3"):
+        plot.draw_limit_surface(SPECIMENS["ellipse"])

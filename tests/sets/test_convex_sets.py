@@ -12,11 +12,17 @@ from limitsurf.sets.projection import Status
 from tests.sets.specimens import SPECIMENS
 
 NAMES = list(SPECIMENS)
+#: Sums with a disk have no kernel: an interior-point method finds points to the root of its gap.
+CONIC = ["bar", "collinear contacts", "disk and box", "moved bar"]
 
 
 @pytest.fixture(params=NAMES)
 def specimen(request):
     return SPECIMENS[request.param]
+
+
+def is_exact(S):
+    return not any(S is SPECIMENS[name] for name in CONIC)
 
 
 def middle_and_size(S):
@@ -55,8 +61,8 @@ def test_projection_is_the_conic_twins(specimen, rng):
     assert projection.distance == pytest.approx(twin, abs=2e-6 * scale)
     slow = ConvexSet._project(specimen, p, metric)
     gap = np.linalg.norm(projection.point - slow.point, axis=1)
-    # an interior point method locates the point to the square root of its tolerance
-    assert np.all(gap <= 1e-3 * scale)
+    assert np.all(gap <= projection.error_bound + slow.error_bound)
+    assert np.all(slow.error_bound <= 1e-3 * scale)
 
 
 def test_residual_lies_in_the_normal_cone(specimen, rng):
@@ -65,23 +71,24 @@ def test_residual_lies_in_the_normal_cone(specimen, rng):
     e = p - projection.point
     excess = specimen.support(e) - np.einsum("ij,ij->i", e, projection.point)
     scale = scale_of(specimen, p)
-    bound = np.maximum(projection.error_bound, 1e-12 * scale)
+    bound = np.maximum(projection.error_bound, 1e-15 * scale)
     assert np.all(excess <= 4 * scale * bound)
-    assert np.all(excess >= -1e-9 * scale**2)
+    assert np.all(excess >= -4 * scale * bound)
 
 
 def test_error_bounds_are_small_and_never_negative(specimen, rng):
     p = points_around(specimen, rng)
     projection = specimen.project(p)
     assert np.all(projection.error_bound >= 0.0)
-    assert np.all(projection.error_bound <= 1e-3 * scale_of(specimen, p))
+    limit = 1e-11 if is_exact(specimen) else 1e-3
+    assert np.all(projection.error_bound <= limit * scale_of(specimen, p))
     assert not np.any(projection.status == Status.FAILED)
 
 
 def test_projection_is_idempotent(specimen, rng):
     first = specimen.project(points_around(specimen, rng, 6))
     again = specimen.project(first.point)
-    tolerance = first.error_bound + again.error_bound + 1e-9 * scale_of(specimen, first.point)
+    tolerance = first.error_bound + again.error_bound + 1e-15 * scale_of(specimen, first.point)
     assert np.all(np.linalg.norm(again.point - first.point, axis=1) <= tolerance)
 
 
@@ -100,9 +107,10 @@ def test_inside_points_stay(specimen, rng):
     weights = rng.dirichlet(np.ones(5))
     inner = weights @ specimen.support_point(d)
     scale = scale_of(specimen, inner)
-    assert specimen.contains(inner, tol=1e-6 * scale)
+    tol = (1e-13 if is_exact(specimen) else 1e-6) * scale
+    assert specimen.contains(inner, tol=tol)
     projection = specimen.project(inner)
-    assert projection.distance <= projection.error_bound + 1e-6 * scale
+    assert projection.distance <= projection.error_bound + tol
     far = inner + 10 * scale * d[0] / np.linalg.norm(d[0])
     assert not specimen.contains(far)
     assert specimen.distance(far) > scale
@@ -111,7 +119,8 @@ def test_inside_points_stay(specimen, rng):
 def test_distance_and_projection_agree(specimen, rng):
     p = points_around(specimen, rng, 6)
     scale = scale_of(specimen, p)
-    assert specimen.distance(p) == pytest.approx(specimen.project(p).distance, abs=2e-6 * scale)
+    tol = (1e-15 if is_exact(specimen) else 2e-6) * scale
+    assert specimen.distance(p) == pytest.approx(specimen.project(p).distance, rel=1e-15, abs=tol)
 
 
 def test_metrics_are_changes_of_coordinates(specimen, rng):
@@ -123,8 +132,10 @@ def test_metrics_are_changes_of_coordinates(specimen, rng):
     projection = specimen.project(p, metric=W)
     image = LinearImage(C, specimen).project(p @ C.T)
     scale = scale_of(specimen, p) * np.linalg.norm(C, 2)
-    assert projection.distance == pytest.approx(image.distance, abs=1e-6 * scale)
-    assert projection.point @ C.T == pytest.approx(image.point, abs=1e-3 * scale)
+    tol = (1e-13 if is_exact(specimen) else 1e-6) * scale
+    assert projection.distance == pytest.approx(image.distance, abs=tol)
+    gap = np.linalg.norm(projection.point @ C.T - image.point, axis=1)
+    assert np.all(gap <= projection.error_bound + image.error_bound + 1e-15 * scale)
     e = p - projection.point
     expected = np.sqrt(np.einsum("ij,jk,ik->i", e, W, e))
     outside = ~projection.inside
@@ -149,7 +160,8 @@ def test_face_holds_the_points_farthest_along_its_normal(specimen, rng):
         face = specimen.face(d)
         assert face.dim == specimen.dim
         ends = face.support_point(rng.normal(size=(3, specimen.dim)))
-        assert ends @ d == pytest.approx(np.full(3, specimen.support(d)), abs=1e-5 * scale)
+        tol = (1e-9 if is_exact(specimen) else 1e-5) * scale * max(np.linalg.norm(d), 1.0)
+        assert ends @ d == pytest.approx(np.full(3, specimen.support(d)), abs=tol)
     whole = specimen.face(np.zeros(specimen.dim))
     d = rng.normal(size=(3, specimen.dim))
     assert whole.support(d) == pytest.approx(specimen.support(d), abs=1e-6 * scale)

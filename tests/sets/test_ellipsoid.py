@@ -7,40 +7,57 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from limitsurf.errors import InputError, SolveFailed
-from limitsurf.sets.ellipsoid import Ellipsoid
+from limitsurf.sets.ellipsoid import Ellipsoid, _decompose
 from limitsurf.sets.projection import Status
 
 
-def exact_projection(center, turn, semi_axes, p):
-    """Return the closest point of ``{c + Q diag(s) u}`` in 50 digits; Q made orthogonal in them."""
+def exact_projection(center, axes, p, weights):
+    """Return the closest point in the norm ``sum weights e^2``, in 50 digits."""
+    n, k = axes.shape
+    w = [mp.sqrt(mp.mpf(float(v))) for v in weights]
+    if not axes.any():
+        return [mp.mpf(float(v)) for v in center], w
+    square = mp.matrix(n, max(n, k))  # zero columns are no axes
+    for i, j in np.ndindex(n, k):
+        square[i, j] = w[i] * mp.mpf(float(axes[i, j]))
+    U, s, _ = mp.svd_r(square, full_matrices=False)
+    kept = [j for j in range(len(s)) if s[j] > s[0] * mp.mpf(10) ** -35]
+    s = [s[j] for j in kept]
+    d = [w[i] * (mp.mpf(float(p[i])) - mp.mpf(float(center[i]))) for i in range(n)]
+    b = [mp.fsum(U[i, j] * d[i] for i in range(n)) for j in kept]
+    t = secular_root(s, b)
+    y = [s[j] ** 2 * b[j] / (s[j] ** 2 + t) for j in range(len(s))]
+    return [
+        mp.mpf(float(center[i])) + mp.fsum(U[i, j] * v for j, v in zip(kept, y, strict=True)) / w[i]
+        for i in range(n)
+    ], w
+
+
+def secular_root(s, b):
+    def norm2(t):
+        return mp.fsum((s[j] * b[j] / (s[j] ** 2 + t)) ** 2 for j in range(len(s)))
+
+    if norm2(mp.mpf(0)) <= 1:
+        return mp.mpf(0)
+    high = mp.sqrt(mp.fsum((s[j] * b[j]) ** 2 for j in range(len(s))))
+    low = high * mp.mpf(10) ** -80
+    for _ in range(240):
+        middle = mp.sqrt(low * high)
+        low, high = (middle, high) if norm2(middle) > 1 else (low, middle)
+    return high
+
+
+def exact_error(E, p, weights):
+    """Return the error of a projection, its bound, and the size of the problem."""
+    identity = np.array_equal(weights, np.ones(E.dim))
+    projection = E.project(p, metric=None if identity else weights)
     with mp.workdps(50):
-        Q = mp.qr(mp.matrix(turn.tolist()))[0]
-        signs = [
-            1 if mp.fsum(Q[i, j] * turn[i, j] for i in range(len(turn))) > 0 else -1
-            for j in range(len(semi_axes))
-        ]
-        d = [mp.mpf(float(x)) - mp.mpf(float(c)) for x, c in zip(p, center, strict=True)]
-        s = [mp.mpf(float(x)) for x in semi_axes]
-        b = [signs[j] * mp.fsum(Q[i, j] * d[i] for i in range(len(d))) for j in range(len(s))]
-
-        def norm2(t):
-            return mp.fsum((s[j] * b[j] / (s[j] ** 2 + t)) ** 2 for j in range(len(s)))
-
-        t = mp.mpf(0)
-        if s and norm2(t) > 1:
-            low, high = (
-                mp.mpf(10) ** -60,
-                mp.sqrt(mp.fsum((s[j] * b[j]) ** 2 for j in range(len(s)))),
-            )
-            for _ in range(400):
-                middle = mp.sqrt(low * high)
-                low, high = (middle, high) if norm2(middle) > 1 else (low, middle)
-            t = high
-        x = [mp.mpf(float(c)) for c in center]
-        for j in range(len(s)):
-            y = s[j] ** 2 * b[j] / (s[j] ** 2 + t)
-            x = [x[i] + signs[j] * Q[i, j] * y for i in range(len(x))]
-        return np.array([float(v) for v in x])
+        x, w = exact_projection(E.center, E.axes, p, weights)
+        e = [a * (mp.mpf(float(v)) - b) for a, v, b in zip(w, projection.point, x, strict=True)]
+        error = float(mp.sqrt(mp.fsum(v * v for v in e)))
+    root = np.sqrt(weights)
+    lengths = [root * p, root * E.center, *(root[:, None] * E.axes).T]
+    return error, float(projection.error_bound), max(np.abs(v).max() for v in lengths)
 
 
 CASES = {
@@ -59,24 +76,72 @@ CASES = {
 def test_against_50_digits(name, where, rng):
     """Errors relative to max(|p|, |c|, |A|) stay below 1e-14."""
     s = np.array(CASES[name])
-    for _ in range(8):
-        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0][:, : len(s)]
-        center = rng.normal(size=3)
-        E = Ellipsoid(center, turn * s)
+    for _ in range(6):
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:, : len(s)] * s
+        E = Ellipsoid(rng.normal(size=3), axes)
         u = rng.normal(size=len(s))
         u *= 1.0 / max(np.linalg.norm(u), 1e-300)
         p = {
-            "outside": center + 2 * rng.normal(size=3),
-            "inside": center + 0.6 * (turn * s) @ u,
-            "boundary": center + (turn * s) @ u,
-            "far": center + 1e6 * rng.normal(size=3),
+            "outside": E.center + 2 * rng.normal(size=3),
+            "inside": E.center + 0.6 * axes @ u,
+            "boundary": E.center + axes @ u,
+            "far": E.center + 1e6 * rng.normal(size=3),
         }[where]
-        expected = exact_projection(center, turn, s, p)
-        projection = E.project(p)
-        size = max(np.abs(p).max(), np.abs(center).max(), s.max(initial=0.0))
-        error = np.linalg.norm(projection.point - expected)
-        assert error <= 1e-14 * size * (3 if where == "far" else 1)
-        assert error <= projection.error_bound or error <= 2e-16 * size
+        error, bound, size = exact_error(E, p, np.ones(3))
+        assert error <= 1e-15 * size
+        assert error <= bound <= 1e-14 * size
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([(3, 1), (3, 2), (3, 3), (3, 5), (2, 2), (2, 3), (5, 3)]),
+    st.sampled_from(["columns", "rows", "condition", "rank 1", "round"]),
+    st.sampled_from([1.0, 1e-140, 1e140]),
+    st.booleans(),
+)
+def test_bounds_are_never_below_the_true_error(seed, shape, kind, scale, weighted):
+    """Axes of any shape, rank and grading, points anywhere, scales far apart."""
+    rng = np.random.default_rng(seed)
+    axes = rng.normal(size=shape)
+    if kind == "columns":
+        axes *= 10.0 ** rng.uniform(-12, 0, size=shape[1])
+    elif kind == "rows":
+        axes *= 10.0 ** rng.uniform(-12, 0, size=(shape[0], 1))
+    elif kind == "condition":
+        U, s, V = np.linalg.svd(axes, full_matrices=False)
+        axes = (U * 10.0 ** rng.uniform(-12, 0, size=len(s))) @ V
+    elif kind == "rank 1":
+        axes = np.outer(axes[:, 0], axes[0])
+    center = rng.normal(size=shape[0]) * rng.integers(0, 2)
+    u = rng.normal(size=shape[1])
+    tip = axes @ (u / np.linalg.norm(u))
+    away = rng.normal(size=shape[0])
+    p = center + [0.6 * tip, tip, 2 * away, 1e6 * away][rng.integers(4)]
+    weights = 10.0 ** rng.uniform(-4, 4, size=shape[0]) if weighted else np.ones(shape[0])
+    error, bound, size = exact_error(Ellipsoid(scale * center, scale * axes), scale * p, weights)
+    assert error <= 1e-14 * size
+    assert error <= bound
+
+
+def test_small_semi_axes_are_known_to_full_relative_precision(rng):
+    """Rows and columns of different sizes, as forces and moments in SI units are."""
+    for _ in range(20):
+        axes = rng.normal(size=(3, 3)) * 10.0 ** rng.uniform(-6, 0, size=(3, 1))
+        axes *= 10.0 ** rng.uniform(-3, 0, size=3)
+        with mp.workdps(50):
+            exact = [float(v) for v in mp.svd_r(mp.matrix(axes.tolist()), compute_uv=False)]
+        assert _decompose(axes)[1] == pytest.approx(exact, rel=1e-13)
+
+
+@pytest.mark.parametrize("shape", [(3, 1), (3, 2), (3, 3), (3, 5), (1, 1), (1, 4), (5, 2)])
+def test_semi_axes_of_any_shape(shape, rng):
+    axes = rng.normal(size=shape)
+    U, s = _decompose(axes)
+    assert s == pytest.approx(np.linalg.svd(axes, compute_uv=False), rel=1e-13)
+    products = U.T @ U
+    assert products == pytest.approx(np.eye(len(s)), abs=4e-15)
+    assert (U * s**2) @ U.T == pytest.approx(axes @ axes.T, abs=1e-13)
 
 
 def test_the_inside_of_a_solid_is_inside():
@@ -105,6 +170,9 @@ def test_random_ellipsoids_satisfy_the_optimality_conditions(seed, n, k):
 def test_rank_and_repr():
     assert Ellipsoid([0, 0, 0], np.empty((3, 0))).rank == 0
     assert Ellipsoid([0, 0], [[1, 2], [2, 4]]).rank == 1
+    assert Ellipsoid([0, 0, 0], np.zeros((3, 2))).rank == 0
+    assert Ellipsoid([0, 0], [[1, 2, 3], [2, 4, 6]]).rank == 1
+    assert Ellipsoid([0, 0], [[1e-150, 0], [0, 1e-140]]).rank == 2
     assert "semi-axes [2., 1.]" in repr(Ellipsoid([0, 0], [[1, 0], [0, 2]]))
 
 
@@ -150,3 +218,12 @@ def test_failures_are_raised_or_returned(monkeypatch):
     returned = E.project([3.0, 0.0], throw=False)
     assert returned.status == Status.FAILED
     assert "scale the set" in str(Status(int(returned.status)))
+
+
+def test_singular_values_that_are_not_found_raise(monkeypatch):
+    def stop_early(axes, **options):
+        return np.ones(2), np.eye(2), np.eye(2), np.ones(7), np.ones(3), 1
+
+    monkeypatch.setattr("limitsurf.sets.ellipsoid.dgejsv", stop_early)
+    with pytest.raises(SolveFailed, match="singular values"):
+        Ellipsoid([0.0, 0.0], np.eye(2)).project([3.0, 0.0])

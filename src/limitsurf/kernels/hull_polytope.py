@@ -17,7 +17,7 @@ from limitsurf.kernels.normal_fan import (
     rounding,
 )
 
-__all__ = ["hull_polytope"]
+__all__ = ["hull_polytope", "solid_hull"]
 
 
 @compiled
@@ -48,6 +48,47 @@ def _coplanar_runs(
     return label
 
 
+@compiled
+def _orient(corners: Ints, neighbors: Ints, seed: int) -> None:
+    """Turn triangles so that those on either side of an edge run along it in opposite directions.
+
+    `seed` keeps its sense. The normal of a sliver, which rounding may have turned over, has no say.
+    """
+    known = np.zeros(corners.shape[0], np.bool_)
+    stack = np.empty(corners.shape[0], np.int32)
+    known[seed], stack[0], depth = True, seed, 1
+    while depth > 0:
+        depth -= 1
+        t = stack[depth]
+        for k in range(3):
+            u = neighbors[t, k]  # across the edge from corner k + 1 to corner k + 2
+            if known[u]:
+                continue
+            for j in range(3):
+                if corners[u, j] == corners[t, (k + 1) % 3]:
+                    if corners[u, (j + 1) % 3] == corners[t, (k + 2) % 3]:
+                        corners[u, 0], corners[u, 1] = corners[u, 1], corners[u, 0]
+                        neighbors[u, 0], neighbors[u, 1] = neighbors[u, 1], neighbors[u, 0]
+                    break
+            known[u], stack[depth] = True, u
+            depth += 1
+
+
+def _outer_normals(vertices: Floats, offsets: Ints, turns: Ints, planes: Floats) -> Floats:
+    """Return the normals of facets; of Qhull's for slivers, whose own area is rounding.
+
+    Where the two differ, the one in whose direction the facet is the highest part of the hull.
+    """
+    normals = facet_normals(vertices, offsets, turns)
+    for i in np.flatnonzero(~(np.abs(normals - planes).max(axis=1) < 1e-11)):
+        corners = turns[offsets[i] : offsets[i + 1]]
+        heights = vertices @ np.array([normals[i], planes[i]]).T
+        excess = heights.max(axis=0) - heights[corners].min(axis=0)
+        if not excess[0] <= excess[1]:
+            normals[i] = planes[i]
+    return normals
+
+
 def hull_polytope(points: Floats) -> Polytope:
     """Return the convex hull of points; flat if they lie in a plane, on a line or coincide.
 
@@ -70,31 +111,37 @@ def hull_polytope(points: Floats) -> Polytope:
         return flat_polytope(points[[int(np.argmin(along)), int(np.argmax(along))]])
     if rank == 2:
         return flat_polytope(points[ConvexHull(arms @ axes[:2].T).vertices])
-    return _solid_hull(points, noise)
+    return solid_hull(points, noise)
 
 
-def _solid_hull(points: Floats, noise: float) -> Polytope:
+def solid_hull(points: Floats, noise: float) -> Polytope:
+    """Return the hull of points that do not lie in a plane; heights up to `noise` are rounding."""
     hull = ConvexHull(points)
     corners = hull.simplices.astype(np.int32)
     a, b, c = (points[corners[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
-    corners[inward] = corners[inward][:, ::-1]
+    areas = np.cross(b - a, c - a)
+    order = np.argsort(-np.linalg.norm(areas, axis=1)).astype(np.int32)
+    neighbors = hull.neighbors.astype(np.int32)
+    if areas[order[0]] @ hull.equations[order[0], :3] < 0:
+        corners[order[0], :2], neighbors[order[0], :2] = (
+            corners[order[0], 1::-1].copy(),
+            neighbors[order[0], 1::-1].copy(),
+        )
+    _orient(corners, neighbors, int(order[0]))
     indices = corners.ravel()
     offsets = np.arange(0, len(indices) + 1, 3, dtype=np.int32)
     twins = pair_twins(offsets, indices)
     normals = facet_normals(points, offsets, indices)
-    order = np.argsort(-np.linalg.norm(np.cross(b - a, c - a), axis=1)).astype(np.int32)
     h = np.arange(len(indices), dtype=np.int32)
     t = h // 3
     mesh = Mesh(t, 3 * t + (h + 1) % 3, 3 * t + (h + 2) % 3, twins)
     level = ANGLE * float(np.ptp(points, axis=0).max()) + noise
-    for factor in (1.0, 30.0, 1000.0):  # more only where facets are nearly coplanar
+    for factor in (1.0, 30.0, 1000.0, 0.0):  # more only where facets are nearly coplanar
         label = _coplanar_runs(points, corners, normals, twins, order, factor * level)
-        vertices, offsets, turns, _, pairs, sound = merge_faces(
+        vertices, offsets, turns, labels, pairs, sound = merge_faces(
             mesh, indices, points, label, ANGLE, noise
         )
         if sound:
-            return Polytope(
-                vertices, offsets, turns, facet_normals(vertices, offsets, turns), pairs
-            )
+            outer = _outer_normals(vertices, offsets, turns, hull.equations[labels, :3])
+            return Polytope(vertices, offsets, turns, outer, pairs)
     raise InputError("points", "nearly lie in a plane; their hull has no clear facets")

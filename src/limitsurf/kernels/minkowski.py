@@ -11,7 +11,8 @@ parallelograms of the edges whose arcs cross (`fan_overlay`). Where facets or ed
 the overlay breaks facets into patches; here these get a common label and are merged.
 
 Everything that lies less than ``ANGLE * length + rounding`` over a plane counts as lying in it.
-So the result differs from the exact sum by no more than a few times that height. Where facets of
+So the result differs from the exact sum by no more than a few times that height; flat and thin sums
+are found another way (`thin_sum`), for there such heights decide about the rim. Where facets of
 P and Q are parallel to within about 100 times ANGLE but not to within ANGLE, thin facets may come
 out whose normals are only good to that angle.
 """
@@ -23,15 +24,16 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.spatial import QhullError
 
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.kernels.compile import Floats, Ints, compiled
 from limitsurf.kernels.fan_overlay import Axis, Overlay, lay_over
 from limitsurf.kernels.flat_polytope import flat_polytope
-from limitsurf.kernels.hull_polytope import hull_polytope
 from limitsurf.kernels.merge_faces import merge_faces, number_vertices
 from limitsurf.kernels.normal_fan import ANGLE, Polytope, normal_fan, rounding
 from limitsurf.kernels.sum_facets import attach_slivers, label_patches, violation
+from limitsurf.kernels.thin_sum import FLAT, flat_sum, hull_of_sums, widths
 
 __all__ = ["add_polygon", "minkowski_sum", "minkowski_sum_of_all", "zonotope"]
 
@@ -40,12 +42,16 @@ __all__ = ["add_polygon", "minkowski_sum", "minkowski_sum_of_all", "zonotope"]
 _SPINS = ((0.5427, 0.3711, 0.7535), (-0.6613, 0.7193, 0.2128), (0.2387, -0.8231, 0.5154))
 _FACTORS = (1.0, 1.0, 30.0, 1e-3, 1000.0)
 
-#: Certified error, relative to the size of the sum, with which an attempt is good, and the worst
-#: that is accepted when no attempt is. Only sums with facets that are parallel to within 1e-13 to
-#: 1e-10 need more than one attempt. If all fail and there are few vertex sums, their hull it is.
+#: Certified error, relative to the size of the sum, with which an attempt is good, the worst that
+#: is accepted when no attempt is, and when there are too many vertex sums for a hull. Only sums
+#: with facets that are parallel to within 1e-13 to 1e-10 need more than one attempt.
 _GOOD = 4e-12
+_FAIR = 1e-10
 _BAD = 1e-9
 _FEW = 1_000_000
+
+#: Ten times the ratio of least to greatest width, from which on the overlay is not even tried.
+_THIN = 1e-4
 
 
 @compiled
@@ -96,7 +102,9 @@ def _sum_once(
     total = Polytope(vertices, offsets, indices, _rows(normals, labels), twins)
     if not sound:
         return p, math.inf
-    return total, violation(p_fan, q_fan, overlay, total, labels, label.shape[0])
+    return total, violation(
+        (p.vertices, p_fan), (q.vertices, q_fan), overlay, points, vertex, total, labels
+    )
 
 
 def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
@@ -110,8 +118,8 @@ def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
     Raises
     ------
     SolveFailed
-        If the facets do not close up, or not to within 1e-9 of the size: many facets parallel to
-        within 1e-13 to 1e-10, but not less.
+        If the facets do not close up to within 1e-9 of the size, and the vertex sums are too many
+        (a million) for a hull: many facets parallel to within 1e-13 to 1e-10, but not less.
 
     Examples
     --------
@@ -128,6 +136,28 @@ def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
     noise = rounding(p.vertices), rounding(q.vertices)
     if len(q.vertices) == 2 and (line := _sum_on_line(p, q, noise)) is not None:
         return line
+    axes, extents = widths(p, q)
+    if extents[2] <= FLAT * extents[0]:
+        return flat_sum(p, q, axes)
+    few = len(p.vertices) * len(q.vertices) <= _FEW
+    thin = min(1.0, 10.0 * float(extents[2] / extents[0]))
+    if thin > _THIN or not few:
+        best, least = _best_overlay(p, q, noise, thin)
+        worst = _FAIR if few else _BAD
+        if least <= thin * (worst * float(extents[0]) + 4 * sum(noise)):
+            return best
+    if few:
+        with contextlib.suppress(InputError, QhullError):
+            return hull_of_sums(p, q, axes, extents)
+    raise SolveFailed(
+        "Minkowski sum: its facets do not close up; merge nearly coplanar facets of the summands"
+    )
+
+
+def _best_overlay(
+    p: Polytope, q: Polytope, noise: tuple[float, float], thin: float
+) -> tuple[Polytope, float]:
+    """Return the best of several attempts at the overlay, and its certified error."""
     span = float((np.ptp(p.vertices, axis=0) + np.ptp(q.vertices, axis=0)).max())
     best, least = p, np.inf
     for attempt, factor in enumerate(_FACTORS):
@@ -136,16 +166,9 @@ def minkowski_sum(p: Polytope, q: Polytope) -> Polytope:
         total, wrong = _sum_once(p, q, heights, ANGLE * factor, spin)
         if wrong < least:
             best, least = total, wrong
-        if least <= _GOOD * span + 4 * sum(noise):
-            return best
-    if least <= _BAD * span:
-        return best
-    if len(p.vertices) * len(q.vertices) <= _FEW:
-        with contextlib.suppress(InputError):
-            return hull_polytope((p.vertices[:, None] + q.vertices).reshape(-1, 3))
-    raise SolveFailed(
-        "Minkowski sum: its facets do not close up; merge nearly coplanar facets of the summands"
-    )
+        if least <= thin * (_GOOD * span + 4 * sum(noise)):
+            break
+    return best, least
 
 
 def _sum_on_line(p: Polytope, q: Polytope, noise: tuple[float, float]) -> Polytope | None:

@@ -1,9 +1,13 @@
-r"""Closest point of a convex polynomial sublevel set :math:`\{x : q(x) \le 1\}`.
+r"""Values of even convex quartics q, and the closest points of :math:`\{x : q(x) \le 1\}`.
 
-For a multiplier :math:`\lambda > 0` let :math:`x(\lambda)` minimise
-:math:`\tfrac12 |x - p|^2 + \lambda q(x)`, strongly convex; :math:`q(x(\lambda))` falls with
-:math:`\lambda`. Newton's method finds :math:`(x, \lambda)` with :math:`q(x) = 1`; inner Newton
-steps are damped, and :math:`\lambda` is kept inside a bracket.
+In the metric :math:`W = C^T C` the closest point x of p satisfies
+
+.. math:: W (p - x) = \lambda \nabla q(x), \qquad \lambda > 0, \quad q(x) = 1 .
+
+Newton's method on these conditions (sequential quadratic programming; Nocedal and Wright,
+*Numerical Optimization*, chapter 18) moves x along the tangent plane and then back to the boundary
+along its ray, which is a quadratic equation. As :math:`W + \lambda \nabla^2 q` is positive
+definite, every step leads downhill; steps that overshoot are halved.
 """
 
 from __future__ import annotations
@@ -14,13 +18,13 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
 
-__all__ = ["closest_on_polynomial", "polynomial_values"]
+__all__ = ["closest_on_polynomial", "evaluate", "newton_step", "polynomial_values", "to_boundary"]
 
 _EPS = float(np.finfo(np.float64).eps)
 
 
 @compiled
-def _evaluate(exponents: Ints, c: Floats, x: Floats, grad: Floats, hess: Floats) -> float:
+def evaluate(exponents: Ints, c: Floats, x: Floats, grad: Floats, hess: Floats) -> float:
     """Return q(x); fill gradient and Hessian."""
     n = x.shape[0]
     grad[:] = 0.0
@@ -62,23 +66,33 @@ def polynomial_values(exponents: Ints, c: Floats, points: Floats) -> Floats:
 
 
 @compiled
-def _to_boundary(exponents: Ints, c: Floats, x: Floats) -> None:
-    """Scale x != 0 so that q(x) = 1: q(s x) = a s^2 + b s^4, even quartics only."""
-    a = 0.0
-    b = 0.0
+def to_boundary(exponents: Ints, c: Floats, x: Floats) -> float:
+    """Scale x != 0 so that q(x) = 1: q(s x) = a s^2 + b s^4, even quartics only.
+
+    Returns ``sum |c_k x^e_k|``, the factor by which rounding of q exceeds that of its value.
+    """
+    x /= np.abs(x).max()  # fourth powers of far points overflow
+    sums = np.zeros((2, 2))
     for k in range(c.shape[0]):
         term = c[k] * _term(exponents[k], x, -1, -1)
-        if exponents[k].sum() == 2:
-            a += term
-        else:
-            b += term
+        degree = exponents[k].sum() // 2 - 1
+        sums[degree, 0] += term
+        sums[degree, 1] += abs(term)
+    a, b = sums[0, 0], sums[1, 0]
     # s^2 = (-a + sqrt(a^2 + 4 b)) / (2 b), without cancellation
-    x *= math.sqrt(2.0 / (a + math.sqrt(a * a + 4.0 * b)))
+    square = 2.0 / (a + math.sqrt(a * a + 4.0 * b))
+    x *= math.sqrt(square)
+    return float(square * (sums[0, 1] + square * sums[1, 1]))
 
 
 @compiled
 def closest_on_polynomial(
-    points: Floats, exponents: Ints, c: Floats, closest: Floats, bound: Floats, count: Ints
+    points: Floats,
+    polynomial: tuple[Ints, Floats],
+    metric: tuple[Floats, Floats],
+    closest: Floats,
+    bound: Floats,
+    count: Ints,
 ) -> None:
     """Fill the closest points, error bounds and iterations (0 inside, -1 not converged).
 
@@ -86,12 +100,14 @@ def closest_on_polynomial(
     ----------
     points : (k, n) float
         Points p.
-    exponents, c : (m, n) int, (m,) float
-        An even, convex q of degrees two and four.
+    polynomial : (m, n) int and (m,) float
+        Exponents and coefficients of an even, convex q of degrees two and four.
+    metric : (n, n) and (n, n) float
+        W = C'C, and the transposed inverse of C.
     closest, bound, count
-        Receive the result. The last step puts x on the boundary exactly, where the gradient is an
-        outer normal; so the distance of ``p - x`` from the ray of the gradient bounds the error.
+        Receive the result; the bound is in the norm of W. See `_certificate`.
     """
+    exponents, c = polynomial
     n = points.shape[1]
     grad, hess = np.empty(n), np.empty((n, n))
     for k in range(points.shape[0]):
@@ -99,56 +115,111 @@ def closest_on_polynomial(
         x = p.copy()
         count[k] = 0
         bound[k] = 0.0
-        if _evaluate(exponents, c, p, grad, hess) > 1.0:
-            _to_boundary(exponents, c, x)
-            count[k] = _newton(exponents, c, p, x, grad, hess)
-            _to_boundary(exponents, c, x)
-            _evaluate(exponents, c, x, grad, hess)
-            e = p - x
-            shift = max(np.sum(e * grad) / np.sum(grad * grad), 0.0)
-            size = np.abs(p).max() + np.abs(x).max()
-            bound[k] = math.sqrt(np.sum((e - shift * grad) ** 2)) + 8 * _EPS * size
-            if bound[k] > 1e-9 * size:
+        value = evaluate(exponents, c, p, grad, hess)
+        noise = 4 * (n + c.shape[0]) * _EPS * evaluate(exponents, np.abs(c), np.abs(p), grad, hess)
+        if value > 1.0:
+            to_boundary(exponents, c, x)
+            count[k] = _newton(polynomial, metric[0], p, x, grad, hess)
+            residual, rounding = _certificate(polynomial, metric, p, x)
+            bound[k] = residual + rounding
+            if not residual <= 1e-9 * (_norm(metric[0], p) + _norm(metric[0], x)) + rounding:
                 count[k] = -1
+        elif value > 1.0 - noise:  # p lies on the boundary, as far as rounding tells
+            bound[k] = noise * _norm(metric[0], p)
         closest[k] = x
 
 
 @compiled
-def _newton(exponents: Ints, c: Floats, p: Floats, x: Floats, grad: Floats, hess: Floats) -> int:
-    """Newton's method on ``x - p + lambda grad q = 0, q = 1``, x kept on the boundary.
+def _norm(W: Floats, e: Floats) -> float:
+    return math.sqrt(max(np.sum(e * _times(W, e)), 0.0))
 
-    Each step solves the linearised conditions, takes the new multiplier, and pulls x back to the
-    boundary along its ray; steps are halved until the distance falls.
+
+@compiled
+def _times(matrix: Floats, x: Floats) -> Floats:
+    """Return ``matrix x`` (`@` on small arrays calls BLAS)."""
+    result = np.zeros(matrix.shape[0])
+    for i in range(matrix.shape[0]):
+        for j in range(x.shape[0]):
+            result[i] += matrix[i, j] * x[j]
+    return result
+
+
+@compiled
+def _certificate(
+    polynomial: tuple[Ints, Floats], metric: tuple[Floats, Floats], p: Floats, x: Floats
+) -> tuple[float, float]:
+    """Return two parts of a bound, in the norm of W, on the distance of x from the closest point.
+
+    A point x on the boundary is the closest point of ``x + t W^-1 grad q(x)``, t >= 0, and closest
+    points are no farther apart than points: so the error is at most ``|C^-T (W e - t grad q)|``,
+    ``e = p - x``. The second part is rounding of the two terms, and of q: it puts x off the
+    boundary by at most half its relative error, as ``x.grad q >= 2 q``, where the gradient differs.
     """
-    n = p.shape[0]
-    matrix = np.empty((n + 1, n + 1))
-    right = np.empty(n + 1)
-    _evaluate(exponents, c, x, grad, hess)
-    shift = max(np.sum((p - x) * grad) / np.sum(grad * grad), 0.0)
-    distance = np.sum((p - x) ** 2)
-    for iteration in range(1, 60):
-        matrix[:n, :n] = np.eye(n) + shift * hess
-        matrix[:n, n] = grad
-        matrix[n, :n] = grad
-        matrix[n, n] = 0.0
-        right[:n] = p - x - shift * grad
-        right[n] = 0.0
-        step = np.linalg.solve(matrix, right)
+    (exponents, c), (W, root) = polynomial, metric
+    n = x.shape[0]
+    grad, rough, hess = np.empty(n), np.empty(n), np.empty((n, n))
+    evaluate(exponents, c, x, grad, hess)
+    turn = np.abs(_times(hess, x))
+    eps = 2 * (n + c.shape[0]) * _EPS
+    off = eps * evaluate(exponents, np.abs(c), np.abs(x), rough, hess)
+    e = p - x
+    normal = _times(root, grad)
+    t = max(np.sum(e * grad) / np.sum(normal * normal), 0.0)
+    rest = _times(root, _times(W, e) - t * grad)
+    noise = eps * _times(np.abs(W), np.abs(e)) + t * (eps * rough + off * turn)
+    noise = _times(np.abs(root), noise)
+    rounding = math.sqrt(np.sum(noise * noise)) + 2 * off * _norm(W, x)
+    return math.sqrt(np.sum(rest * rest)), rounding
+
+
+@compiled
+def _newton(
+    polynomial: tuple[Ints, Floats], W: Floats, p: Floats, x: Floats, grad: Floats, hess: Floats
+) -> int:
+    """Move x along the boundary to the point closest to p; return the iterations."""
+    exponents, c = polynomial
+    last, moved = math.inf, math.inf
+    for iteration in range(1, 100):
+        evaluate(exponents, c, x, grad, hess)
+        pull = _times(W, p - x)
+        shift = max(np.sum(pull * grad) / np.sum(grad * grad), 0.0)
+        rest = pull - shift * grad
+        off = math.sqrt(np.sum(rest * rest))
+        if off > 0.5 * last and moved <= 1e-8 * np.abs(x).max():  # rounding is all that is left
+            return iteration
+        last = off
+        step = newton_step(W + shift * hess, grad, rest)
+        noise = 16 * _EPS * _norm(W, x) * _norm(W, p - x)
         length = 1.0
         trial = x.copy()
         while length > 1e-8:
-            trial = x + length * step[:n]
-            _to_boundary(exponents, c, trial)
-            if np.sum((p - trial) ** 2) <= distance * (1.0 + 8 * _EPS):
+            trial = x + length * step
+            rough = to_boundary(exponents, c, trial)
+            # half the fall of the squared distance; the difference of the two would cancel
+            if np.sum((trial - x) * _times(W, p - 0.5 * (x + trial))) >= -rough * noise:
                 break
             length *= 0.5
-        moved = math.sqrt(np.sum((trial - x) ** 2))
         if length <= 1e-8:
             return iteration
+        moved = np.abs(trial - x).max()
         x[:] = trial
-        distance = np.sum((p - x) ** 2)
-        _evaluate(exponents, c, x, grad, hess)
-        shift = max(np.sum((p - x) * grad) / np.sum(grad * grad), 0.0)
-        if moved <= 4 * _EPS * math.sqrt(np.sum(x * x)):
+        if moved <= 2 * _EPS * np.abs(x).max():
             return iteration
-    return 60
+    return 100
+
+
+@compiled
+def newton_step(hess: Floats, grad: Floats, rest: Floats) -> Floats:
+    """Return s, square to the gradient, with ``hess s + mu grad = rest`` for some mu.
+
+    A trace of the identity keeps a Hessian that is singular to rounding from being so exactly.
+    """
+    n = grad.shape[0]
+    matrix, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
+    size = np.abs(hess).max()
+    matrix[:n, :n] = hess / size + 2 * _EPS * np.eye(n)
+    unit = grad / np.abs(grad).max()
+    matrix[:n, n] = unit
+    matrix[n, :n] = unit
+    right[:n] = rest / size
+    return np.linalg.solve(matrix, right)[:n]

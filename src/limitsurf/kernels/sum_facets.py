@@ -12,6 +12,8 @@ from limitsurf.kernels.normal_fan import Arc, Fan, Polytope, arc_of, signed_heig
 
 __all__ = ["attach_slivers", "label_patches", "violation"]
 
+_THIN = 1e-5  # area over squared length of facets whose neighbours say little about their normal
+
 
 @compiled
 def _parallelogram(e: Arc, f: Arc, normal: Floats) -> float:
@@ -134,28 +136,80 @@ def _rise(normals: Floats, i: int, edge: Floats, around: Ints, start: int, end: 
 
 
 @compiled
-def violation(p: Fan, q: Fan, overlay: Overlay, total: Polytope, labels: Ints, n: int) -> float:
+def _far_rise(normals: Floats, i: int, vertices: Floats, v: int) -> float:
+    """Return how far any vertex lies above v in direction i."""
+    rise = 0.0
+    for k in range(vertices.shape[0]):
+        height = 0.0
+        for x in range(3):
+            height += normals[i, x] * (vertices[k, x] - vertices[v, x])
+        rise = max(rise, height)
+    return rise
+
+
+@compiled
+def _is_sliver(total: Polytope, i: int) -> bool:
+    """Whether facet i is so thin that its normal may be far from those of its neighbours."""
+    vertices, offsets, indices, normals, _ = total
+    start, area, longest = offsets[i], 0.0, 0.0
+    o = indices[start]
+    for k in range(start + 1, offsets[i + 1] - 1):
+        p, q = indices[k], indices[k + 1]
+        x = vertices[p, 0] - vertices[o, 0]
+        y = vertices[p, 1] - vertices[o, 1]
+        z = vertices[p, 2] - vertices[o, 2]
+        u = vertices[q, 0] - vertices[o, 0]
+        v = vertices[q, 1] - vertices[o, 1]
+        w = vertices[q, 2] - vertices[o, 2]
+        area += normals[i, 0] * (y * w - z * v)
+        area += normals[i, 1] * (z * u - x * w) + normals[i, 2] * (x * v - y * u)
+        longest = max(longest, x * x + y * y + z * z, u * u + v * v + w * w)
+    return area < _THIN * longest
+
+
+@compiled
+def violation(
+    p: tuple[Floats, Fan],
+    q: tuple[Floats, Fan],
+    overlay: Overlay,
+    points: Floats,
+    vertex: Ints,
+    total: Polytope,
+    labels: Ints,
+) -> float:
     """Return by how much the facets of the sum fail to support it: a certificate.
 
-    The vertices are sums of vertices. If in the direction of each facet the two vertices that
-    make up a point of its plane are extreme (no neighbour is higher), the sum lies below that
-    plane; then the surface bounds the sum.
+    The vertices are sums of vertices. If the two vertices that make up a point (of a patch) are
+    extreme in the direction of a facet, and the facet's corners are as high as that point, the sum
+    lies below its plane; then the surface bounds the sum, unless it is thin (`thin_sum`).
+
+    Parameters
+    ----------
+    p, q : (k, 3) float and Fan
+        Vertices and fans of the summands.
+    overlay, points, vertex
+        Patches, their vertices, and the one from which each half-edge starts.
+    total, labels
+        The sum, and the patch after which each of its facets is named.
     """
     _, offsets, indices, normals, _ = total
-    some = some_edge(overlay.mesh.face, n)
+    some = some_edge(overlay.mesh.face, overlay.mesh.face.max() + 1)
     p_of, q_of, vertices = overlay.p_vertex, overlay.q_vertex, total.vertices
-    p_edge, p_first, p_around = p.edge, p.first, p.around
-    q_edge, q_first, q_around = q.edge, q.first, q.around
+    (p_vertices, p_fan), (q_vertices, q_fan) = p, q
+    p_edge, p_first, p_around = p_fan.edge, p_fan.first, p_fan.around
+    q_edge, q_first, q_around = q_fan.edge, q_fan.first, q_fan.around
     worst = 0.0
     for i in range(labels.shape[0]):
-        v, w = p_of[some[labels[i]]], q_of[some[labels[i]]]
-        rise = _rise(normals, i, p_edge, p_around, p_first[v], p_first[v + 1])
-        rise += _rise(normals, i, q_edge, q_around, q_first[w], q_first[w + 1])
-        low, high = math.inf, -math.inf
+        h = some[labels[i]]
+        v, w, base = p_of[h], q_of[h], vertex[h]
+        if _is_sliver(total, i):
+            rise = _far_rise(normals, i, p_vertices, v) + _far_rise(normals, i, q_vertices, w)
+        else:
+            rise = _rise(normals, i, p_edge, p_around, p_first[v], p_first[v + 1])
+            rise += _rise(normals, i, q_edge, q_around, q_first[w], q_first[w + 1])
         for k in range(offsets[i], offsets[i + 1]):
             height = 0.0
             for x in range(3):
-                height += normals[i, x] * (vertices[indices[k], x] - vertices[0, x])
-            low, high = min(low, height), max(high, height)
-        worst = max(worst, rise + high - low)
+                height += normals[i, x] * (vertices[indices[k], x] - points[base, x])
+            worst = max(worst, abs(rise - height))
     return worst

@@ -43,9 +43,8 @@ def _secular_root(s: Floats, b: Floats) -> tuple[float, int]:
     high = 0.0
     low = 0.0
     for j in range(s.shape[0]):
-        high += (s[j] * b[j]) ** 2
+        high += s[j] * abs(b[j])  # |y| < |s b| / lambda
         low = max(low, s[j] * (abs(b[j]) - s[j]))  # |y_j| = 1
-    high = math.sqrt(high)  # |y| < |s b| / lambda
     shift = low
     for iteration in range(1, 100):  # three or four do; rounding may make the last ones waver
         total, slope = _norm_and_slope(s, b, shift)
@@ -94,23 +93,27 @@ def closest_on_ellipsoid(
         bound is no rounding error: the iteration did not converge.
     """
     n, r = U.shape
-    b = np.empty(r)
+    b, unit = np.empty(r), 1.0
+    if r > 0:
+        unit = s.max()  # products of semi-axes overflow where they are large or small
+    t = s / unit
     for k in range(points.shape[0]):
         inside, size = _coordinates(points[k], center, U, s, b)
+        b /= unit
         shift = 0.0
         norm = 1.0
         count[k] = 0
         if inside > 1.0:
-            shift, count[k] = _secular_root(s, b)
-            norm = math.sqrt(_norm_and_slope(s, b, shift)[0])
+            shift, count[k] = _secular_root(t, b)
+            norm = math.sqrt(_norm_and_slope(t, b, shift)[0])
         closest[k] = center
         residual = 0.0
         for j in range(r):
-            y = s[j] * b[j] / (s[j] * s[j] + shift) / norm
-            residual += (b[j] - s[j] * y - shift * y / s[j]) ** 2
+            y = t[j] * b[j] / (t[j] * t[j] + shift) / norm
+            residual += (b[j] - t[j] * y - shift * y / t[j]) ** 2
             for i in range(n):
                 closest[k, i] += U[i, j] * s[j] * y
-        bound[k] = math.sqrt(residual) + 4 * (n + r) * _EPS * size
+        bound[k] = unit * math.sqrt(residual) + 4 * (n + r) * _EPS * size
         if bound[k] > 1e-9 * size:
             count[k] = -1
 

@@ -17,7 +17,8 @@ def draw_limit_surface(*surfaces: ConvexSet, names: tuple[str, ...] = ()) -> Any
     Parameters
     ----------
     *surfaces : ConvexSet
-        Sets in three dimensions: loads [N, N, N m]. Flat ones are drawn as sheets.
+        Sets in three dimensions: loads [N, N, N m]. Flat ones are drawn as sheets, segments as
+        lines, points as points.
     names : tuple of str, optional
         Names for the legend.
     """
@@ -28,21 +29,23 @@ def draw_limit_surface(*surfaces: ConvexSet, names: tuple[str, ...] = ()) -> Any
     figure = go.Figure()
     for k, surface in enumerate(surfaces):
         vertices, triangles = surface.to_mesh()
-        i, j, m = triangles.T
-        x, y, z = vertices.T
-        figure.add_mesh3d(
-            x=x,
-            y=y,
-            z=z,
-            i=i,
-            j=j,
-            k=m,
-            color=COLORS[k % len(COLORS)],
-            opacity=0.6 if len(surfaces) > 1 else 1.0,
-            flatshading=True,
-            name=names[k] if k < len(names) else f"surface {k + 1}",
-            showlegend=len(surfaces) > 1,
-        )
+        common = {
+            **dict(zip("xyz", vertices.T, strict=True)),
+            "name": names[k] if k < len(names) else f"surface {k + 1}",
+            "showlegend": len(surfaces) > 1,
+        }
+        color = COLORS[k % len(COLORS)]
+        if len(triangles) == 0:  # a segment or a point has no area to draw
+            line, marker = {"color": color, "width": 6}, {"color": color, "size": 4}
+            figure.add_scatter3d(mode="lines+markers", line=line, marker=marker, **common)
+        else:
+            figure.add_mesh3d(
+                **dict(zip("ijk", triangles.T, strict=True)),
+                color=color,
+                opacity=0.6 if len(surfaces) > 1 else 1.0,
+                flatshading=True,
+                **common,
+            )
     figure.update_layout(
         template="plotly_white",
         font={"family": "system-ui, sans-serif", "size": 14},

@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
-from scipy.linalg import svd
+from scipy.linalg.lapack import dgejsv
 
 from limitsurf.conic.form import Cone, ConicForm
+from limitsurf.errors import SolveFailed
 from limitsurf.kernels.trust_region import closest_on_ellipsoid
 from limitsurf.sets.arguments import Metric, as_array
 from limitsurf.sets.convex_set import ConvexSet, Rows
@@ -20,6 +21,7 @@ __all__ = ["Ellipsoid"]
 Array = NDArray[np.float64]
 
 _RANK = 4e-16  # singular values below this, relative to the largest, are rounding
+_HIGH_ACCURACY, _WANTED, _LEFT_OUT = 2, 0, 3  # xGEJSV's JOBA = F, JOBU = U or JOBV = V, and N
 
 
 class Ellipsoid(ConvexSet):
@@ -127,9 +129,22 @@ class Ellipsoid(ConvexSet):
 
 
 def _decompose(axes: Array) -> tuple[Array, Array]:
-    """Return orthonormal columns and singular values, those of rounding size left out."""
-    if axes.shape[1] == 0:
-        return np.empty((len(axes), 0)), np.empty(0)
-    U, s, _ = svd(axes, full_matrices=False, lapack_driver="gesvd")
+    """Return orthonormal columns and singular values, those of rounding size left out.
+
+    One-sided Jacobi (Drmac and Veselic, SIAM J. Matrix Anal. Appl. 29, 2008; LAPACK's xGEJSV with
+    row pivoting) finds small semi-axes and their directions to full relative precision where rows
+    and columns of A are of very different sizes, as forces and moments are.
+    """
+    n, k = axes.shape
+    if k == 0 or not axes.any():
+        return np.empty((n, 0)), np.empty(0)
+    options = {"joba": _HIGH_ACCURACY, "jobp": 0}
+    if k <= n:
+        s, U, _, work, _, info = dgejsv(axes, jobu=_WANTED, jobv=_LEFT_OUT, **options)
+    else:
+        s, _, U, work, _, info = dgejsv(axes.T, jobu=_LEFT_OUT, jobv=_WANTED, **options)
+    if info != 0:
+        raise SolveFailed(f"axes: singular values not found (xGEJSV returns {info})")
+    s = s * (work[0] / work[1])
     keep = s > _RANK * s[0]
     return np.ascontiguousarray(U[:, keep]), s[keep]

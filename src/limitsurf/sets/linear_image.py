@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -10,10 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.conic.form import ConicForm, image
 from limitsurf.sets.arguments import Metric, as_array
 from limitsurf.sets.convex_set import ConvexSet, Rows
+from limitsurf.sets.projection import Status
 
 __all__ = ["LinearImage", "transport"]
 
 Array = NDArray[np.float64]
+
+_SINGULAR = 1e8  # condition beyond which a map to the preimage loses half of the digits
+_ROUNDING = 8 * float(np.finfo(np.float64).eps)  # of the map to the preimage and back
 
 
 def transport(r: ArrayLike) -> Array:
@@ -40,6 +45,7 @@ class LinearImage(ConvexSet):
     Notes
     -----
     Where S has a closed form for its images (ellipsoids, polytopes, zonotopes), queries use it.
+    Otherwise, if M is invertible, projecting on the image in W is projecting on S in M'WM.
     """
 
     def __init__(
@@ -105,15 +111,42 @@ class LinearImage(ConvexSet):
     def _supports(self, directions: Array) -> Array:
         return np.asarray(self._set.support(directions @ self._matrix) + directions @ self._offset)
 
+    @cached_property
+    def _invertible(self) -> bool:
+        square = self._matrix.shape[0] == self._matrix.shape[1]
+        return square and bool(np.linalg.cond(self._matrix) < _SINGULAR)
+
+    def _pulled_back(self, points: Array, metric: Metric) -> tuple[Array, Metric]:
+        """Return the preimages of points, and the metric M'WM.
+
+        With ``C M = Q R`` the preimage is ``R^-1 Q'C (p - c)``: M'WM is never formed to be factored
+        again, which would square its condition.
+        """
+        Q, R = np.linalg.qr(metric.C @ self._matrix)
+        inner = Metric(R.T @ R, R, identity=False)
+        local = inner.back(metric.into(points - self._offset) @ Q)
+        return np.ascontiguousarray(local), inner  # kernels are compiled for rows
+
     def _project(self, points: Array, metric: Metric) -> Rows:
-        same = self.closed_form
-        return super()._project(points, metric) if same is None else same._project(points, metric)
+        if self.closed_form is not None:
+            return self.closed_form._project(points, metric)
+        if not self._invertible:
+            return super()._project(points, metric)
+        inner, pulled = self._pulled_back(points, metric)
+        rows = self._set._project(inner, pulled)
+        there = rows.point @ self._matrix.T + self._offset
+        there[rows.status == Status.INSIDE] = points[rows.status == Status.INSIDE]
+        lengths = np.linalg.norm(inner, axis=1) + np.linalg.norm(rows.point, axis=1)
+        outer = np.linalg.norm(points, axis=1) + np.linalg.norm(self._offset)
+        size = np.linalg.norm(pulled.C) * lengths + np.linalg.norm(metric.C) * outer
+        return replace(rows, point=there, error_bound=rows.error_bound + _ROUNDING * size)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
-        same = self.closed_form
-        if same is None:
+        if self.closed_form is not None:
+            return self.closed_form._distances(points, metric)
+        if not self._invertible:
             return super()._distances(points, metric)
-        return same._distances(points, metric)
+        return self._set._distances(*self._pulled_back(points, metric))
 
     def __repr__(self) -> str:
         """Return the set that is mapped."""
