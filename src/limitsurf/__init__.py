@@ -14,9 +14,14 @@ if TYPE_CHECKING:
     from limitsurf.actuators.activation import squeeze_activation as squeeze_activation
     from limitsurf.actuators.actuator_array import ActuatorArray as ActuatorArray
     from limitsurf.actuators.actuator_array import load_array as load_array
+    from limitsurf.contacts.contact_set import ContactSet as ContactSet
     from limitsurf.contacts.coulomb import contact_map as contact_map
     from limitsurf.contacts.coulomb import coulomb_contact as coulomb_contact
     from limitsurf.contacts.coulomb import polygonal_contact as polygonal_contact
+    from limitsurf.contacts.friction_load import FrictionLoad as FrictionLoad
+    from limitsurf.contacts.friction_load import friction_load as friction_load
+    from limitsurf.contacts.lattice_contacts import LatticeContacts as LatticeContacts
+    from limitsurf.contacts.project_many import project_many as project_many
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
@@ -28,6 +33,7 @@ if TYPE_CHECKING:
     from limitsurf.planning.turn_function import turn_function as turn_function
     from limitsurf.planning.verification import Verification as Verification
     from limitsurf.planning.verification import verify_alignment as verify_alignment
+    from limitsurf.sets.contact_sum import ContactSum as ContactSum
     from limitsurf.sets.convex_set import ConvexSet as ConvexSet
     from limitsurf.sets.ellipsoid import Ellipsoid as Ellipsoid
     from limitsurf.sets.h_polytope import HPolytope as HPolytope
@@ -45,9 +51,13 @@ _HOME = {
     "Activation": "actuators.activation",
     "ActuatorArray": "actuators.actuator_array",
     "AlignmentPlan": "planning.alignment",
+    "ContactSet": "contacts.contact_set",
+    "ContactSum": "sets.contact_sum",
     "ConvexSet": "sets.convex_set",
     "Ellipsoid": "sets.ellipsoid",
+    "FrictionLoad": "contacts.friction_load",
     "HPolytope": "sets.h_polytope",
+    "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
     "MinkowskiSum": "sets.minkowski_sum",
     "Part": "geometry.part",
@@ -61,9 +71,11 @@ _HOME = {
     "Zonotope": "sets.zonotope",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
+    "friction_load": "contacts.friction_load",
     "load_array": "actuators.actuator_array",
     "plan_alignment": "planning.alignment",
     "polygonal_contact": "contacts.coulomb",
+    "project_many": "contacts.project_many",
     "simulate": "motion.simulate",
     "squeeze_activation": "actuators.activation",
     "squeeze_function": "planning.squeeze_function",

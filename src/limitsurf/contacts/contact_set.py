@@ -91,6 +91,11 @@ class ContactSet:
         return np.zeros_like(self._position) if self._offset is None else self._offset
 
     @property
+    def active(self) -> bool:
+        """Whether offsets were given."""
+        return self._offset is not None
+
+    @property
     def ellipse(self) -> Array | None:
         """Matrices E_i (N, 2, 2), None for disks."""
         return self._ellipse

@@ -12,8 +12,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
-
 from limitsurf.kernels.compile import Floats, Ints, compiled
 from limitsurf.kernels.contact_pass import BLOCK, Contacts, new_table
 from limitsurf.kernels.contact_problem import (
@@ -287,7 +285,7 @@ def _shifted(
 
 
 @compiled
-def _project_group(
+def project_ragged(
     x: Floats,
     y: Floats,
     m: Floats,
@@ -300,7 +298,23 @@ def _project_group(
     last: int,
     answers: Floats,
 ) -> None:
-    """Fill the answers of problems first to last, one load each."""
+    """Fill a row of answers for each of many small problems with a load each.
+
+    Parameters
+    ----------
+    x, y, m : (M,) float
+        Positions about the reference points and radii; problem k has ``ptr[k]:ptr[k + 1]``.
+    offset : (M, 2) or (0, 2) float
+        Offsets of the forces.
+    ptr : (K + 1,) int
+        Where the contacts of a problem begin.
+    points, C, tol
+        As in `project_loads`, (K, 3) loads.
+    first, last : int
+        The problems to solve: threads take a range each.
+    answers : (K, COLUMNS) float
+        Receives the answers.
+    """
     most = 0
     for k in range(first, last):
         most = max(most, ptr[k + 1] - ptr[k])
@@ -318,59 +332,3 @@ def _project_group(
         blocks = table[: -(-n // BLOCK) + 1]
         p = row(points, k)
         _solve_one(cloud, (blocks, none), p, rows, tol, _ZERO, COLD, bests, answers[k])
-
-
-_GROUPS = 64
-
-
-@njit(cache=True, nogil=True, parallel=True, error_model="numpy")
-def _project_side_by_side(
-    x: Floats,
-    y: Floats,
-    m: Floats,
-    offset: Floats,
-    ptr: Ints,
-    points: Floats,
-    C: Floats,
-    tol: float,
-    answers: Floats,
-) -> None:
-    n = points.shape[0]
-    for q in prange(_GROUPS):
-        first, last = q * n // _GROUPS, (q + 1) * n // _GROUPS
-        _project_group(x, y, m, offset, ptr, points, C, tol, first, last, answers)
-
-
-@compiled
-def project_ragged(
-    x: Floats,
-    y: Floats,
-    m: Floats,
-    offset: Floats,
-    ptr: Ints,
-    points: Floats,
-    C: Floats,
-    tol: float,
-    threads: int,
-) -> Floats:
-    """Return a row of answers for each of many small problems with a load each.
-
-    Parameters
-    ----------
-    x, y, m : (M,) float
-        Positions about the reference points and radii; problem k has ``ptr[k]:ptr[k + 1]``.
-    offset : (M, 2) or (0, 2) float
-        Offsets of the forces.
-    ptr : (k + 1,) int
-        Where the contacts of a problem begin.
-    points, C, tol
-        As in `project_loads`.
-    threads : int
-        More than one: groups of problems side by side.
-    """
-    answers = np.empty((points.shape[0], COLUMNS))
-    if threads > 1:
-        _project_side_by_side(x, y, m, offset, ptr, points, C, tol, answers)
-    else:
-        _project_group(x, y, m, offset, ptr, points, C, tol, 0, points.shape[0], answers)
-    return answers

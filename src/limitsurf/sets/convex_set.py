@@ -158,6 +158,8 @@ class ConvexSet(ABC):
         """
         if self.dim != 3:
             raise InputError("set", f"has dimension {self.dim}", remedy="meshes need 3")
+        if (same := self.by_vertices()) is not None:
+            return same.to_mesh()
         return hull_mesh(self.support_point(sphere_directions(directions)))
 
     def _support_points(self, directions: Array) -> Array:
