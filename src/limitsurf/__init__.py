@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from limitsurf.contacts.coulomb import contact_map as contact_map
     from limitsurf.contacts.coulomb import coulomb_contact as coulomb_contact
     from limitsurf.contacts.coulomb import polygonal_contact as polygonal_contact
+    from limitsurf.contacts.lattice_contacts import LatticeContacts as LatticeContacts
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
@@ -48,6 +49,7 @@ _HOME = {
     "ConvexSet": "sets.convex_set",
     "Ellipsoid": "sets.ellipsoid",
     "HPolytope": "sets.h_polytope",
+    "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
     "MinkowskiSum": "sets.minkowski_sum",
     "Part": "geometry.part",
