@@ -43,7 +43,7 @@ def add_cell(
     moments, balls, c : (C, 2, T) float, (C, 3) float, int
         Moments in units of the radius; centres and radii; the cell.
     order : int
-        Last order of the series.
+        Last order of the series, at least 2.
     ux, uy : float
         Velocity of the centre.
     theta, sign : float
@@ -55,7 +55,8 @@ def add_cell(
     """
     x, y = balls[c, 0], balls[c, 1]
     speed = math.sqrt(ux * ux + uy * uy)
-    ex, ey = ux / speed, uy / speed
+    half = 0.5 / speed
+    ex, ey = 2.0 * half * ux, 2.0 * half * uy
     theta = max(theta, _TINY)
     lever = sign * balls[c, 2] / theta  # |u| / w: series of order 1 stand for first moments
     # i w radius / u = i sign theta conj(e)
@@ -66,7 +67,6 @@ def add_cell(
     sums[1] += gx
     sums[2] += gy
     sums[3] += x * gy - y * gx + lever * turn
-    half = 0.5 / speed
     e2r, e2i = ex * ex - ey * ey, 2.0 * ex * ey
     qr = half * (e2r * (inverse - hr) + e2i * hi)
     qi = half * (e2i * (inverse - hr) - e2r * hi)

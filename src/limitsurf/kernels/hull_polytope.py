@@ -17,7 +17,7 @@ from limitsurf.kernels.normal_fan import (
     rounding,
 )
 
-__all__ = ["hull_polytope", "solid_hull"]
+__all__ = ["hull_polytope", "outward_triangles", "solid_hull"]
 
 
 @compiled
@@ -114,9 +114,11 @@ def hull_polytope(points: Floats) -> Polytope:
     return solid_hull(points, noise)
 
 
-def solid_hull(points: Floats, noise: float) -> Polytope:
-    """Return the hull of points that do not lie in a plane; heights up to `noise` are rounding."""
-    hull = ConvexHull(points)
+def outward_triangles(points: Floats, hull: ConvexHull) -> tuple[Ints, Ints]:
+    """Return the triangles (t, 3) of Qhull's hull of points in space, outwards.
+
+    The second array numbers them by falling area.
+    """
     corners = hull.simplices.astype(np.int32)
     a, b, c = (points[corners[:, k]] for k in range(3))
     areas = np.cross(b - a, c - a)
@@ -128,6 +130,13 @@ def solid_hull(points: Floats, noise: float) -> Polytope:
             neighbors[order[0], 1::-1].copy(),
         )
     _orient(corners, neighbors, int(order[0]))
+    return corners, order
+
+
+def solid_hull(points: Floats, noise: float) -> Polytope:
+    """Return the hull of points that do not lie in a plane; heights up to `noise` are rounding."""
+    hull = ConvexHull(points)
+    corners, order = outward_triangles(points, hull)
     indices = corners.ravel()
     offsets = np.arange(0, len(indices) + 1, 3, dtype=np.int32)
     twins = pair_twins(offsets, indices)

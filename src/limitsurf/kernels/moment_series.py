@@ -11,7 +11,7 @@ where :math:`u_0 = U + i w z_0` is the velocity of the centre and :math:`s = i w
 
 Summed over the contacts the powers become moments :math:`M_{kl} = \sum m d^k \bar d^l`; as
 :math:`M_{lk} = \bar M_{kl}`, those with k >= l are enough. They are stored order by order
-(n = k + l), so that a series of lower order is a prefix.
+(n = k + l).
 
 **Tail.** With :math:`|s| \le \theta` the terms of order n of u/|u| are at most
 :math:`\sum_{k+l=n} |b_k c_l| \theta^n`. The sums of moduli are the coefficients of

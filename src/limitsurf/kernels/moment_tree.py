@@ -2,9 +2,10 @@ r"""Sums over contacts in less than linear time, with a bound on their error.
 
 The sums are those of the dual of ``contact_sum``: the support function :math:`h = \sum m_i |u_i|`,
 its gradient :math:`g = \sum m_i G_i u_i/|u_i|` and Hessian. A cell of the quadtree whose radius is
-small beside its distance from the centre of rotation is summed by the series of `moment_series`,
-of the lowest order whose tail is small enough; others are opened; contacts of open leaves are
-summed one by one. Cells are as small as they are near: their number grows with log N.
+small beside its distance from the centre of rotation is summed by the series of `moment_series`
+if the tail is small enough; others are opened; contacts of open leaves are summed one by one. All
+orders are summed, even where fewer would do: it takes no longer, and the bounds are smaller. Cells
+are as small as they are near: their number grows with log N.
 
 **Tail.** A cell of mass M and radius r, with :math:`\theta = |w| r / |u_0|` and
 :math:`A_n = \sum m (|d|/r)^n` (a moment, for even n), has after order n the tails
@@ -39,7 +40,7 @@ _EPS = float(np.finfo(np.float64).eps)
 
 _FAR = 0.45  # no cell with a larger theta is tried; the bound on rounding needs 2 theta < 1
 _SPREAD_ROUNDING = 1e-8  # alpha + beta n times 2^(n/2), at most
-_LIGHT = 1.0 / 256.0  # cells lighter than this share of all contacts are allowed its tail
+_LIGHT = 1.0 / 64.0  # cells lighter than this share of all contacts are allowed its tail
 
 
 @compiled
@@ -62,23 +63,11 @@ def _blur(twist: Floats, reach: float) -> float:
 
 
 @compiled
-def _series_order(
-    moments: Floats, c: int, order: int, theta: float, lever: float, allowed: float
-) -> tuple[int, float]:
-    """Return the lowest order n with a tail within `allowed`, and ``theta^n A / (1 - theta)``.
-
-    The order is 0 if there is none, and 2 at least: the Hessian's second moments begin there.
-    `lever` is the radius of the cell beside the arm of its load.
-    """
-    power = theta * theta
-    for n in range(2, order + 1):
-        even = ((n + 1) // 2) * 2  # A falls with its order
-        spread = moments[c, 0, row_start(even) + even // 2] if even <= order else moments[c, 0, 0]
-        rest = power * (spread + _SPREAD_ROUNDING * moments[c, 0, 0]) / (1.0 - theta)
-        if max(FORCE_TAIL[n + 1] * theta, lever * FORCE_TAIL[n]) * rest <= allowed:
-            return n, rest
-        power *= theta
-    return 0, 0.0
+def _spread(moments: Floats, c: int, order: int) -> float:
+    """Return a bound on ``sum m (|d|/r)^n``, n > order: the last even moment, and its rounding."""
+    even = order - order % 2
+    place = row_start(even) + even // 2
+    return float(moments[c, 0, place] + _SPREAD_ROUNDING * moments[c, 0, 0])
 
 
 @compiled
@@ -103,11 +92,13 @@ def _sum_cell(
         return False
     theta = abs(w) * radius / speed * (1.0 + 2.0 * blur / speed)
     arm = math.sqrt(1.0 + (far + radius) * (far + radius))
-    order, rest = _series_order(moments, c, order, theta, radius / arm, allowed)
-    if order == 0:
+    rest = _spread(moments, c, order) / (1.0 - theta)
+    for _ in range(order):
+        rest *= theta
+    force, torque = FORCE_TAIL[order + 1] * theta * rest, FORCE_TAIL[order] * radius * rest
+    if max(force, torque / arm) > allowed:
         return False
     add_cell(moments, balls, c, order, ux, uy, theta, -1.0 if w < 0.0 else 1.0, powers, sums)
-    force, torque = FORCE_TAIL[order + 1] * theta * rest, FORCE_TAIL[order] * radius * rest
     torque += far * force
     flat = 1.0 / (1.0 - 2.0 * theta)
     root = math.sqrt(flat)
@@ -166,7 +157,7 @@ def tree_sums(
         A contact to leave out, by its place in `tree.x`; -1 for none.
     tol : float
         Tail allowed in the load of a cell, per unit of mass and of ``sqrt(1 + r^2)``; light cells
-        are allowed that of a 256th of all mass. With 0 contacts are summed one by one.
+        are allowed that of a 64th of all mass. With 0 contacts are summed one by one.
     sums : (11,) float
         Receives h, g (3), the Hessian as xx, xy, yy, xw, yw, ww, and ``sum m/|u|``. Contacts at
         the centre of rotation add nothing.

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+
 from limitsurf.kernels.compile import Floats, Ints, compiled
 from limitsurf.kernels.contact_pass import BLOCK, Contacts, new_table
 from limitsurf.kernels.contact_problem import (

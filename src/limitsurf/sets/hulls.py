@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
+from limitsurf.kernels.hull_polytope import outward_triangles
+
 __all__ = ["Hull", "affine_hull", "chebyshev_center", "convex_hull", "is_bounded", "vertices_of"]
 
 Array = NDArray[np.float64]
@@ -69,7 +71,9 @@ def convex_hull(points: Array) -> Hull:
     flat_normals = np.vstack([across, -across])
     triangles = no_triangles
     if rank == points.shape[1] == 3:
-        triangles = _outwards(points, hull.simplices.astype(np.int64), normals)
+        triangles = outward_triangles(local, hull)[0].astype(np.int64)
+        if np.linalg.det(within) < 0.0:  # a reflection
+            triangles = triangles[:, ::-1]
     return Hull(
         np.asarray(vertices, dtype=np.int64),
         np.vstack([normals, flat_normals]),
@@ -77,13 +81,6 @@ def convex_hull(points: Array) -> Hull:
         triangles,
         rank,
     )
-
-
-def _outwards(points: Array, triangles: NDArray[np.int64], normals: Array) -> NDArray[np.int64]:
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), normals) < 0.0
-    triangles[inwards] = triangles[inwards][:, ::-1]
-    return triangles
 
 
 def chebyshev_center(A: Array, b: Array) -> tuple[Array, float] | None:

@@ -135,7 +135,8 @@ class VPolytope(ConvexSet):
         """Return the polytope by its facets; a flat one gets pairs of opposite facets."""
         from limitsurf.sets.h_polytope import HPolytope  # each converts to the other
 
-        rows = np.round(np.column_stack([self._hull.normals, self._hull.offsets]), 14)
+        size = np.abs(self._vertices).max(initial=0.0) or 1.0
+        rows = np.round(np.column_stack([self._hull.normals, self._hull.offsets / size]), 14)
         _, first = np.unique(rows, axis=0, return_index=True)  # triangles of one facet
         return HPolytope(self._hull.normals[first], self._hull.offsets[first])
 
