@@ -15,8 +15,10 @@ __all__ = ["Metric", "as_array", "as_points", "as_rows", "lifted", "read_metric"
 Array = NDArray[np.float64]
 
 
-def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
+def as_array(name: str, value: ArrayLike, *shape: int | None, copy: bool = True) -> Array:
     """Return a read-only float array of the given shape; None leaves a length open.
+
+    Without `copy` it may be the caller's own array, as it is: for what is copied anyway.
 
     Raises
     ------
@@ -24,7 +26,7 @@ def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
         No numbers, not finite, or another shape; names the argument and both shapes.
     """
     try:
-        array = np.array(value, dtype=np.float64)
+        array = np.array(value, dtype=np.float64, copy=copy or None)
     except (TypeError, ValueError) as error:
         raise InputError(name, "is no array of numbers", remedy="check its entries") from error
     if array.size == 0 and array.ndim < len(shape):
@@ -37,7 +39,8 @@ def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
         raise InputError(name, f"has shape {array.shape}, not {wanted}".replace("'", ""))
     if not np.isfinite(array).all():
         raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
-    array.setflags(write=False)
+    if copy:
+        array.setflags(write=False)
     return array
 
 

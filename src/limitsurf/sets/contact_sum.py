@@ -123,18 +123,20 @@ class ContactSum(ConvexSet):
         center: ArrayLike | None = None,
         stretch: ArrayLike | None = None,
     ) -> None:
-        places = as_array("position", position, None, 2)
-        self._radius = as_array("radius", radius, len(places))
-        if (self._radius < 0.0).any():
+        places = as_array("position", position, None, 2, copy=False)
+        m = as_array("radius", radius, len(places), copy=False)
+        if m.min(initial=0.0) < 0.0:
             raise InputError("radius", "has negative entries", remedy="friction radii are >= 0")
         self._center = as_array("center", np.zeros(3) if center is None else center, 3)
         shape = np.empty((0, 3)) if stretch is None else stretch
         self._stretch = as_array("stretch", shape, 0 if stretch is None else len(places), 3)
-        total = self._radius.sum()
-        self._centroid = self._radius @ places / total if total > 0.0 else np.zeros(2)
+        total = m.sum()
+        self._centroid = m @ places / total if total > 0.0 else np.zeros(2)
         self._data = np.empty((6 if len(self._stretch) else 3, len(places)))
-        self._data[:2] = places.T - self._centroid[:, None]
-        self._data[2] = self._radius
+        np.subtract(places.T, self._centroid[:, None], out=self._data[:2])
+        self._data[2] = m
+        self._radius = self._data[2]
+        self._radius.setflags(write=False)
         if len(self._stretch):
             self._data[3:] = self._stretch.T
         self._projected = 0
@@ -147,7 +149,8 @@ class ContactSum(ConvexSet):
     @property
     def position(self) -> Array:
         """Contacts (N, 2), from the reference point."""
-        return self._data[:2].T + self._centroid
+        places: Array = np.column_stack([self._data[0], self._data[1]]) + self._centroid
+        return places
 
     @property
     def radius(self) -> Array:
