@@ -29,7 +29,7 @@ from limitsurf.kernels.contact_problem import (
     speed,
     times_metric,
 )
-from limitsurf.kernels.kink_step import Pair, kink_columns, kink_step, snapped
+from limitsurf.kernels.kink_step import FLAT, Pair, axes_of, kink_columns, kink_step, snapped
 from limitsurf.kernels.symmetric3 import form, plus, plus_outer, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 
@@ -62,13 +62,12 @@ def _force_at_rest(setting: Setting, kink: Kink, rest: Vector) -> Pair:
     """Return f in the unit disk with ``|rest - m P f|_W`` least, or nearly so at its rim."""
     one, two = kink_columns(kink)
     w1, w2 = times_metric(setting, one), times_metric(setting, two)
-    a, b, d = dot(one, w1), dot(one, w2), dot(two, w2)
+    high, low, (cos, sin) = axes_of(dot(one, w1), dot(one, w2), dot(two, w2))
     p, q = dot(w1, rest) / kink.mass, dot(w2, rest) / kink.mass
-    det = a * d - b * b
-    if det > 0.0:
-        p, q = (d * p - b * q) / det, (a * q - b * p) / det
-    size = max(length(p, q), 1.0)
-    return p / size, q / size
+    a = (cos * p + sin * q) / high
+    b = (cos * q - sin * p) / low if low > FLAT * high else 0.0
+    size = max(length(a, b), 1.0)
+    return (cos * a - sin * b) / size, (sin * a + cos * b) / size
 
 
 @compiled

@@ -20,11 +20,21 @@ from limitsurf.kernels.contact_pass import Kink
 from limitsurf.kernels.symmetric3 import Symmetric, factored, solve
 from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 
-__all__ = ["Pair", "kink_columns", "kink_force_in_plane", "kink_step", "snapped", "step_of_solved"]
+__all__ = [
+    "FLAT",
+    "Pair",
+    "axes_of",
+    "kink_columns",
+    "kink_force_in_plane",
+    "kink_step",
+    "snapped",
+    "step_of_solved",
+]
 
 Pair = tuple[float, float]
 
 _EPS = float(np.finfo(np.float64).eps)
+FLAT = 16.0 * _EPS
 
 
 @compiled
@@ -36,19 +46,22 @@ def kink_columns(kink: Kink) -> tuple[Vector, Vector]:
 
 
 @compiled
-def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
-    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, for ``|K^-1 q| > 1``."""
+def axes_of(k00: float, k01: float, k11: float) -> tuple[float, float, Pair]:
+    """Return the eigenvalues of K, the larger first, and its axis, without cancellation."""
     mean, half = 0.5 * (k00 + k11), 0.5 * (k00 - k11)
     spread = length(half, k01)
-    high, low = mean + spread, max(mean - spread, 0.0)
-    cos, sin = 1.0, 0.0
-    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
-        cos, sin = (spread + half, k01) if half >= 0.0 else (k01, spread - half)
-        size = length(cos, sin)
-        cos, sin = cos / size, sin / size
-    a, b = cos * q[0] + sin * q[1], cos * q[1] - sin * q[0]  # in the axes of K
-    left, right = max(abs(a) - high, abs(b) - low, 0.0), length(a, b)
-    sigma = left
+    if spread == 0.0:
+        return mean, mean, (1.0, 0.0)
+    axis = (spread + half, k01) if half >= 0.0 else (k01, spread - half)
+    size = length(axis[0], axis[1])
+    return mean + spread, max(mean - spread, 0.0), (axis[0] / size, axis[1] / size)
+
+
+@compiled
+def _secular_root(high: float, low: float, a: float, b: float) -> float:
+    """Return sigma > 0 with ``(a / (sigma + high))^2 + (b / (sigma + low))^2 = 1``."""
+    sigma, right = max(abs(a) - high, abs(b) - low, 0.0), length(a, b)
+    left = sigma
     for _ in range(60):
         fa, fb = a / (sigma + high), b / (sigma + low)
         square = fa * fa + fb * fb
@@ -61,24 +74,31 @@ def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
         if not left <= step <= right:
             step = 0.5 * (left + right)
         if abs(step - sigma) <= 2.0 * _EPS * step:
-            break
+            return step
         sigma = step
-    fa, fb = a / (sigma + high), b / (sigma + low)
-    norm = length(fa, fb)
-    return (cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm
+    return sigma
 
 
 @compiled
 def kink_force_in_plane(k00: float, k01: float, k11: float, q: Pair) -> tuple[Pair, bool]:
-    """Return the force f in the unit disk, and whether the contact stands still (p = 0)."""
-    det = k00 * k11 - k01 * k01
-    if det > 0.0:
-        f = (k11 * q[0] - k01 * q[1]) / det, (k00 * q[1] - k01 * q[0]) / det
-        if f[0] * f[0] + f[1] * f[1] <= 1.0:
-            return f, True
-    if q[0] == 0.0 and q[1] == 0.0:
-        return (0.0, 0.0), True
-    return _secular_force(k00, k01, k11, q), False
+    """Return the force f in the unit disk, and whether the contact stands still (p = 0).
+
+    K has rank one for a contact that pushes along one line only; q then lies along it too.
+    """
+    high, low, (cos, sin) = axes_of(k00, k01, k11)
+    a, b = cos * q[0] + sin * q[1], cos * q[1] - sin * q[0]
+    if low <= FLAT * high:
+        still = abs(a) <= high
+        fa, fb = (a / high if still and high > 0.0 else math.copysign(1.0, a)), 0.0
+    else:
+        fa, fb = a / high, b / low
+        still = fa * fa + fb * fb <= 1.0
+        if not still:
+            sigma = _secular_root(high, low, a, b)
+            fa, fb = a / (sigma + high), b / (sigma + low)
+            size = length(fa, fb)
+            fa, fb = fa / size, fb / size
+    return (cos * fa - sin * fb, sin * fa + cos * fb), still
 
 
 @compiled

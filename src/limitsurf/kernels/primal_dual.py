@@ -31,6 +31,7 @@ from limitsurf.kernels.contact_problem import (
     residual,
     speed,
 )
+from limitsurf.kernels.kink_polish import polish_kinks
 from limitsurf.kernels.symmetric3 import Symmetric, form, plus, plus_outer, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, length
 
@@ -40,6 +41,8 @@ _EPS = float(np.finfo(np.float64).eps)
 _ZERO = (0.0, 0.0, 0.0)
 _FAST = 1e4  # contacts that much faster than eps take the force of their velocity
 _PASSES = 150
+_CLOSE = 1e-4  # eps, relative to the speed, from which kinks are tried as they are
+_STILL = 30.0  # contacts slower than that many eps are taken to stand still
 
 
 @compiled
@@ -92,8 +95,18 @@ def _pass(
             moving = along(along(moving, m * ux / size, one), m * uy / size, two)
         else:
             moving = along(along(moving, fx, one), fy, two)
-            gap += _gap(m, fx / m, fy / m, ux, uy, size)
+            if size > _velocity_rounding(one, two, v):
+                gap += _gap(m, fx / m, fy / m, ux, uy, size)
     return h, g, A, moving, resting, gap
+
+
+@compiled
+def _velocity_rounding(one: Vector, two: Vector, v: Vector) -> float:
+    """Return what rounding makes of the velocity of a contact that stands still."""
+    arms = 0.0
+    for k in range(3):
+        arms += (abs(one[k]) + abs(two[k])) * abs(v[k])
+    return 4.0 * _EPS * arms
 
 
 @compiled
@@ -169,10 +182,15 @@ def primal_dual(problem: Problem, best: Floats, v: Vector, eps: float, room: Flo
             return
         slope = -dot(rest, step)
         _update_forces(contacts, forces, v, step, eps)
-        if speed(setting, step) <= 0.5 * max(eps, 0.1 * speed(setting, v)):
+        if speed(setting, step) <= eps:
             if eps <= least:
                 idle += 1
                 if idle > 4 and best[BOUND] > 0.5 * old:
                     return
+            slow = _STILL * eps
+            if eps < _CLOSE * speed(setting, v) and polish_kinks(
+                problem, best, v, slow, forces, room
+            ):
+                return
             eps = max(0.1 * eps, least)
             value_old = np.inf

@@ -131,11 +131,11 @@ class ContactSum(ConvexSet):
         shape = np.empty((0, 3)) if stretch is None else stretch
         self._stretch = as_array("stretch", shape, 0 if stretch is None else len(places), 3)
         total = m.sum()
-        self._centroid = m @ places / total if total > 0.0 else np.zeros(2)
+        self._centroid: Array = m @ places / total if total > 0.0 else np.zeros(2)
         self._data = np.empty((6 if len(self._stretch) else 3, len(places)))
         np.subtract(places.T, self._centroid[:, None], out=self._data[:2])
         self._data[2] = m
-        self._radius = self._data[2]
+        self._radius: Array = self._data[2]
         self._radius.setflags(write=False)
         if len(self._stretch):
             self._data[3:] = self._stretch.T
@@ -156,6 +156,11 @@ class ContactSum(ConvexSet):
     def radius(self) -> Array:
         """Friction radii (N,)."""
         return self._radius
+
+    @property
+    def stretch(self) -> Array | None:
+        """Entries (N, 3) of the stretches of ellipses, None for disks."""
+        return self._stretch if len(self._stretch) else None
 
     @property
     def center(self) -> Array:
