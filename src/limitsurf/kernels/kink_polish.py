@@ -30,6 +30,7 @@ from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 __all__ = ["polish_kinks"]
 
 _STEPS = 6
+_EPS = float(np.finfo(np.float64).eps)
 _DEPENDENT = 1e-12  # an eigenvalue of sum P P' below this, relative to the largest, is zero
 _NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _ZERO = (0.0, 0.0, 0.0)
@@ -82,6 +83,15 @@ def _change_forces(contacts: Contacts, forces: Floats, still: Floats, push: Vect
 
 
 @compiled
+def _least_squares(S: Floats, b: Floats) -> Floats:
+    """Return x with ``S x = b`` for a positive S, but for what rounding makes of zero."""
+    values, axes = np.linalg.eigh(S)
+    kept = values > _EPS * values[-1]
+    x: Floats = axes @ (np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0) * (axes.T @ b))
+    return x
+
+
+@compiled
 def polish_kinks(
     problem: Problem, best: Floats, v: Vector, slow: float, start: Floats, room: Floats
 ) -> bool:
@@ -115,7 +125,7 @@ def polish_kinks(
         rest = np.array(along(left, -1.0, times(setting.Q, v)))
         step = np.zeros(3)
         if N.shape[1] > 0:
-            step = N @ np.linalg.solve(N.T @ (_full(B) @ N), N.T @ rest)
+            step = N @ _least_squares(N.T @ (_full(B) @ N), N.T @ rest)
         at = at + step
         rest = rest - _full(B) @ step
         push = axes @ (inverse * (axes.T @ rest))
