@@ -17,7 +17,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import compiled
 from limitsurf.kernels.contact_pass import Kink
-from limitsurf.kernels.symmetric3 import Symmetric, factored, solve
+from limitsurf.kernels.symmetric3 import Symmetric, factored, solve, times
 from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 
 __all__ = ["Pair", "kink_columns", "kink_force_in_plane", "kink_step", "snapped", "step_of_solved"]
@@ -84,6 +84,8 @@ def kink_force_in_plane(k00: float, k01: float, k11: float, q: Pair) -> tuple[Pa
 @compiled
 def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
     """Return whether B is positive definite, the step d, the force f, and whether p = 0."""
+    if kink.contact >= 0 and kink.stretch == (1.0, 0.0, 1.0):
+        return _step_about(B, b, kink, u)
     ok, L = factored(B)
     if not ok:
         return False, b, (0.0, 0.0), False
@@ -93,6 +95,65 @@ def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vecto
     one, two = kink_columns(kink)
     d, f, still = step_of_solved(z, solve(B, L, one), solve(B, L, two), kink, u)
     return True, d, f, still
+
+
+@compiled
+def _unit_force(a: float, b: float, d: float, m: float, r: Pair) -> tuple[Pair, float]:
+    """Return the unit f, and sigma, with ``(m I + sigma A) f = r``, for ``|r| > m``."""
+    half = 0.5 * (a - d)
+    spread = length(half, b)
+    high = 0.5 * (a + d) + spread
+    low = max(a * d - b * b, 0.0) / high
+    cos, sin = 1.0, 0.0
+    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
+        cos, sin = (spread + half, b) if half >= 0.0 else (b, spread - half)
+        size = length(cos, sin)
+        cos, sin = cos / size, sin / size
+    ra, rb = cos * r[0] + sin * r[1], cos * r[1] - sin * r[0]  # in the axes of A
+    excess = length(ra, rb) - m
+    sigma = left = max(excess / high, (abs(rb) - m) / low)
+    right = excess / low
+    for _ in range(60):
+        wa, wb = m + sigma * high, m + sigma * low
+        square = (ra / wa) ** 2 + (rb / wb) ** 2
+        norm = math.sqrt(square)
+        if norm > 1.0:
+            left = sigma
+        else:
+            right = sigma
+        falls = (ra / wa) ** 2 * high / wa + (rb / wb) ** 2 * low / wb
+        step = sigma + (norm - 1.0) * square / falls
+        if not left <= step <= right:
+            step = 0.5 * (left + right)
+        if abs(step - sigma) <= 2.0 * _EPS * step:
+            break
+        sigma = step
+    fa, fb = ra / (m + sigma * high), rb / (m + sigma * low)
+    norm = length(fa, fb)
+    return ((cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm), sigma
+
+
+@compiled
+def _step_about(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
+    """Return what `kink_step` does, for a disk."""
+    n, m = (kink.y, -kink.x, 1.0), kink.mass
+    Bn = times(B, n)
+    turning, gw = dot(n, Bn), dot(n, b)
+    if not turning > 0.0:
+        return False, b, (0.0, 0.0), False
+    cx, cy = Bn[0] / turning, Bn[1] / turning
+    a00, a01, a11 = B[0] - cx * Bn[0], B[1] - cx * Bn[1], B[2] - cy * Bn[1]
+    if not (a00 > 0.0 and a00 * a11 - a01 * a01 > 0.0):
+        return False, b, (0.0, 0.0), False
+    r = a00 * u[0] + a01 * u[1] - b[0] + cx * gw, a01 * u[0] + a11 * u[1] - b[1] + cy * gw
+    still = length(r[0], r[1]) <= m
+    if still:
+        f, sigma = (r[0] / m, r[1] / m), 0.0
+    else:
+        f, sigma = _unit_force(a00, a01, a11, m, r)
+    dx, dy = sigma * f[0] - u[0], sigma * f[1] - u[1]
+    w = -(gw / turning + cx * dx + cy * dy)
+    return True, along((dx, dy, 0.0), w, n), f, still
 
 
 @compiled
