@@ -138,7 +138,7 @@ def _newton_on_sphere(problem: Problem, look: Look) -> tuple[bool, Vector, Pair,
     """
     kink, one, two, u, t = look.kink, look.one, look.two, look.u, look.t
     setting = problem.setting
-    H = plus(hessian(problem.table), t, setting.Q)
+    H = plus(hessian(problem.table), abs(t), setting.Q)
     B = plus_outer(H, setting.reach * setting.unit + abs(t), look.Qd)
     b = along(scaled(t, look.Qd), -1.0, look.left)
     ok, step, f, still = kink_step(B, b, kink, u)
