@@ -21,6 +21,7 @@ from limitsurf.kernels.contact_problem import (
     GAVE_UP,
     HOLD,
     PASSES,
+    SLIDE,
     Problem,
     Setting,
     Witness,
@@ -219,11 +220,13 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
 def pin(problem: Problem, best: Floats, v: Vector) -> Next:
     """Try rotations about each of the contacts near the centre of rotation, nearest first.
 
-    Where two contacts nearly coincide Newton's steps do not tell which of them stands still.
+    Where two contacts nearly coincide Newton's steps do not tell which of them stands still. The
+    best rotation is a start for `slide`: the centre may lie beside the contact.
     """
     contacts, setting = problem.contacts, problem.setting
     d = _on_sphere(setting, v)
     tau, slower = abs(d[2]) * setting.spacing, -1.0
+    least, start = np.inf, d
     for _ in range(_PINS):
         nearest, found = np.inf, -1
         for i in range(contacts.data.shape[1]):
@@ -235,6 +238,9 @@ def pin(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         slower = nearest
         about = _on_sphere(setting, snapped(kink_of(contacts, found, 0.0), d))
-        if _look(problem, best, about, (0.0, 0.0), -1).bound <= setting.target:
+        bound = _look(problem, best, about, (0.0, 0.0), -1).bound
+        if bound <= setting.target:
             return CERTIFIED, about, 0.0
-    return GAVE_UP, d, 0.0
+        if bound < least:
+            least, start = bound, about
+    return (SLIDE if least < np.inf else GAVE_UP), start, 0.0

@@ -152,6 +152,8 @@ def solve_contact_sum(problem: Problem, best: Floats, v: Vector, eps: float, roo
             stage, v, eps = slide(problem, best, v)
             if stage == GAVE_UP:
                 stage, v, eps = pin(problem, best, v)
+            if stage == SLIDE:
+                stage, v, eps = slide(problem, best, v)
     if stage != CERTIFIED:
         v, eps = smooth_start(problem.setting)
         primal_dual(problem, best, v, eps, room)
