@@ -36,17 +36,45 @@ def kink_columns(kink: Kink) -> tuple[Vector, Vector]:
 
 
 @compiled
-def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
-    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, for ``|K^-1 q| > 1``."""
-    mean, half = 0.5 * (k00 + k11), 0.5 * (k00 - k11)
-    spread = length(half, k01)
-    high, low = mean + spread, max(mean - spread, 0.0)
+def _axes(a: float, b: float, d: float) -> tuple[float, float, float, float]:
+    """Return the eigenvalues of ``[[a, b], [b, d]]``, larger first, and the axis of the larger."""
+    half = 0.5 * (a - d)
+    spread = length(half, b)
+    high = 0.5 * (a + d) + spread
+    low = max(a * d - b * b, 0.0) / high if high > 0.0 else 0.0
     cos, sin = 1.0, 0.0
-    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
-        cos, sin = (spread + half, k01) if half >= 0.0 else (k01, spread - half)
+    if spread > 0.0:  # without cancellation
+        cos, sin = (spread + half, b) if half >= 0.0 else (b, spread - half)
         size = length(cos, sin)
         cos, sin = cos / size, sin / size
+    return high, low, cos, sin
+
+
+@compiled
+def kink_force_in_plane(
+    k00: float, k01: float, k11: float, q: Pair, line: bool = False
+) -> tuple[Pair, bool]:
+    """Return the force f in the unit disk, and whether the contact stands still (p = 0).
+
+    `line` says that the contact pushes along one line only: K and q have no other component.
+    """
+    high, low, cos, sin = _axes(k00, k01, k11)
     a, b = cos * q[0] + sin * q[1], cos * q[1] - sin * q[0]  # in the axes of K
+    if high == 0.0 or (a == 0.0 and b == 0.0):
+        return (0.0, 0.0), True
+    if line:
+        fa = max(-1.0, min(a / high, 1.0))
+        return (cos * fa, sin * fa), abs(a) <= high
+    if low > 0.0 and length(a / high, b / low) <= 1.0:
+        fa, fb = a / high, b / low
+        return (cos * fa - sin * fb, sin * fa + cos * fb), True
+    fa, fb = _secular_force(high, low, a, b)
+    return (cos * fa - sin * fb, sin * fa + cos * fb), False
+
+
+@compiled
+def _secular_force(high: float, low: float, a: float, b: float) -> Pair:
+    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, in the axes of K."""
     left, right = max(abs(a) - high, abs(b) - low, 0.0), length(a, b)
     sigma = left
     for _ in range(60):
@@ -65,20 +93,7 @@ def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
         sigma = step
     fa, fb = a / (sigma + high), b / (sigma + low)
     norm = length(fa, fb)
-    return (cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm
-
-
-@compiled
-def kink_force_in_plane(k00: float, k01: float, k11: float, q: Pair) -> tuple[Pair, bool]:
-    """Return the force f in the unit disk, and whether the contact stands still (p = 0)."""
-    det = k00 * k11 - k01 * k01
-    if det > 0.0:
-        f = (k11 * q[0] - k01 * q[1]) / det, (k00 * q[1] - k01 * q[0]) / det
-        if f[0] * f[0] + f[1] * f[1] <= 1.0:
-            return f, True
-    if q[0] == 0.0 and q[1] == 0.0:
-        return (0.0, 0.0), True
-    return _secular_force(k00, k01, k11, q), False
+    return fa / norm, fb / norm
 
 
 @compiled
@@ -100,15 +115,7 @@ def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vecto
 @compiled
 def _unit_force(a: float, b: float, d: float, m: float, r: Pair) -> tuple[Pair, float]:
     """Return the unit f, and sigma, with ``(m I + sigma A) f = r``, for ``|r| > m``."""
-    half = 0.5 * (a - d)
-    spread = length(half, b)
-    high = 0.5 * (a + d) + spread
-    low = max(a * d - b * b, 0.0) / high
-    cos, sin = 1.0, 0.0
-    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
-        cos, sin = (spread + half, b) if half >= 0.0 else (b, spread - half)
-        size = length(cos, sin)
-        cos, sin = cos / size, sin / size
+    high, low, cos, sin = _axes(a, b, d)
     ra, rb = cos * r[0] + sin * r[1], cos * r[1] - sin * r[0]  # in the axes of A
     excess = length(ra, rb) - m
     sigma = left = max(excess / high, (abs(rb) - m) / low)
@@ -164,7 +171,9 @@ def step_of_solved(
     one, two = kink_columns(kink)
     m = kink.mass
     q = u[0] - dot(one, z), u[1] - dot(two, z)
-    f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q)
+    r, s, t = kink.stretch
+    line = r * t - s * s <= 16.0 * _EPS * (r + t) ** 2
+    f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q, line)
     return along(along(scaled(-1.0, z), -m * f[0], k1), -m * f[1], k2), f, still
 
 
