@@ -55,13 +55,13 @@ def metric(rng, kind, size=1.0):
 
 
 def gyration(position, radius):
-    """Return the radius of gyration, 1 if it is zero but for rounding."""
+    """Return the radius of gyration, 1 if the contacts lie much closer together than the origin."""
     total = radius.sum()
     if total == 0.0:
         return 1.0
-    apart = position - radius @ position / total
-    size = float(np.sqrt(radius @ (apart**2).sum(axis=1) / total))
-    return size if size > 1e-12 * np.abs(position).max() else 1.0
+    middle = radius @ position / total
+    size = np.sqrt(radius @ ((position - middle) ** 2).sum(axis=1) / total)
+    return float(size) if size > 1e-5 * np.linalg.norm(middle) else 1.0
 
 
 def inverse(W):

@@ -172,7 +172,7 @@ def step_of_solved(
     m = kink.mass
     q = u[0] - dot(one, z), u[1] - dot(two, z)
     r, s, t = kink.stretch
-    line = r * t - s * s <= 16.0 * _EPS * (r + t) ** 2
+    line = abs(r * t - s * s) <= 16.0 * _EPS * (r * r + 2.0 * s * s + t * t)
     f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q, line)
     return along(along(scaled(-1.0, z), -m * f[0], k1), -m * f[1], k2), f, still
 

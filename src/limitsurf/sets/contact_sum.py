@@ -204,9 +204,9 @@ class ContactSum(ConvexSet):
         """Return the same contacts seen from another point or turned, if M says that; else None."""
         turn = matrix[:2, :2] if matrix.shape == (3, 3) else np.zeros((2, 2))
         rigid = np.allclose(turn @ turn.T, np.eye(2), rtol=0.0, atol=1e-14)
-        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.linalg.det(turn):
+        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.round(np.linalg.det(turn)):
             return None
-        shift = np.array([matrix[2] @ [0, 1, 0], -matrix[2] @ [1, 0, 0]])  # in the old axes
+        shift = matrix[2, 2] * np.array([matrix[2, 1], -matrix[2, 0]])  # in the old axes
         places = (self.position + shift) @ turn.T
         return ContactSum(places, self._radius, matrix @ self._center + offset, self._turned(turn))
 
@@ -283,8 +283,10 @@ class ContactSum(ConvexSet):
         tol = CONTACT_SUM if tol is None else tol
         if not 0.0 < tol < 1.0:
             raise InputError("tol", "must lie between 0 and 1", value=tol)
+        if threads != int(threads) or threads < 1:
+            raise InputError("threads", "must be a whole number from 1 on", value=threads)
         starts = _NOTHING_KNOWN if start is None else self._starts(start, len(points))
-        answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, threads)
+        answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, int(threads))
         projection = ContactProjection(self, points, W, answers, shape)
         if failed:
             as_points("p", p, 3)  # raises where entries are not finite
@@ -296,10 +298,12 @@ class ContactSum(ConvexSet):
 
     def _starts(self, start: ArrayLike | Projection, k: int) -> Array:
         """Return rows ``v, eps`` about the centroid; eps = -1 where nothing is known."""
+        known = start.twist if isinstance(start, Projection) else start
+        twists, shape = as_points("start", known, 3)
+        if len(twists) not in (1, k):
+            raise InputError("start", f"has shape {(*shape, 3)}: one for each load, or one for all")
         if isinstance(start, ContactProjection):
             return np.array(np.broadcast_to(start.answers[:, WITNESSES][:, :4], (k, 4)))
-        known = start.twist if isinstance(start, Projection) else start
-        twists, _ = as_points("start", known, 3)
         vx, vy, w = -np.broadcast_to(twists, (k, 3)).T
         cx, cy = self._centroid
         moving = np.where((vx != 0.0) | (vy != 0.0) | (w != 0.0), 0.0, COLD)
