@@ -179,11 +179,11 @@ def _write(
     for k in range(7):
         answer[9 + k] = best[WITNESS + k]
     total = best[BOUND] + setting.rounding if setting.reach > 0.0 else 0.0
-    if setting.reach > 0.0 and not inside:  # the center is added at last, and may be large
+    if setting.reach > 0.0:  # the center is taken off and added again, and may be large
         square, a = 0.0, cloud.center
         for b in C:
             square += (abs(b[0] * a[0]) + abs(b[1] * a[1]) + abs(b[2] * a[2])) ** 2
-        total += _EPS * math.sqrt(square)
+        total += 2.0 * _EPS * math.sqrt(square)
     answer[16] = 0.0 if inside else math.sqrt(dot(z, z))
     answer[17], answer[18] = total, best[PASSES]
     answer[19] = _INSIDE if inside else _OUTSIDE
