@@ -276,6 +276,8 @@ def exact_sums(contacts: Contacts, v: Vector, tau: float, table: Floats) -> Kink
     for q in range(table.shape[0] - 1):
         if table[q, 11] > 0.0:
             mass += _add_slow(contacts, q, v, tau, kink, total)
+    if mass == 0.0:  # only contacts without friction were left out
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0))
     return kink_of(contacts, kink, mass)
 
 

@@ -25,7 +25,14 @@ from limitsurf.kernels.project_loads import (
     contact_numbers,
     project_loads,
 )
-from limitsurf.sets.arguments import Metric, as_array, as_points, as_rows, read_metric
+from limitsurf.sets.arguments import (
+    Metric,
+    as_array,
+    as_points,
+    as_rows,
+    check_effort,
+    read_metric,
+)
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM
@@ -281,12 +288,9 @@ class ContactSum(ConvexSet):
         points, shape = as_rows("p", p, 3)
         W = read_metric(metric, 3)
         tol = CONTACT_SUM if tol is None else tol
-        if not 0.0 < tol < 1.0:
-            raise InputError("tol", "must lie between 0 and 1", value=tol)
-        if threads != int(threads) or threads < 1:
-            raise InputError("threads", "must be a whole number from 1 on", value=threads)
+        check_effort(tol, threads)
         starts = _NOTHING_KNOWN if start is None else self._starts(start, len(points))
-        answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, int(threads))
+        answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, threads)
         projection = ContactProjection(self, points, W, answers, shape)
         if failed:
             as_points("p", p, 3)  # raises where entries are not finite
