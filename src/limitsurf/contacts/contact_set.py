@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -67,7 +68,7 @@ class ContactSet:
         self._ellipse = None if ellipse is None else as_array("ellipse", ellipse, n, 2, 2)
         if sides is not None and ellipse is not None:
             raise InputError("sides", "are for disks", remedy="leave out ellipse or sides")
-        if sides is not None and (sides != int(sides) or sides < 3):
+        if sides is not None and (not isinstance(sides, Integral) or sides < 3):
             raise InputError("sides", "must be a whole number from 3 on", value=sides)
         self._sides = sides
         stretch = None if self._ellipse is None else _stretches(self._ellipse)

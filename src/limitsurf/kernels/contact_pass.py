@@ -353,6 +353,8 @@ def _exact_sums(
     for q in range(table.shape[0] - 1):
         if table[q, 11] > 0.0:
             mass += _add_slow(contacts, q, v, tau, kink, total)
+    if mass == 0.0:  # only contacts without friction were left out
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0
     return kink_of(contacts, kink, mass), 0.0
 
 

@@ -182,7 +182,7 @@ def primal_dual(problem: Problem, best: Floats, v: Vector, eps: float, room: Flo
             return
         slope = -dot(rest, step)
         _update_forces(contacts, forces, v, step, eps)
-        if speed(setting, step) <= eps:
+        if speed(setting, step) <= max(eps, 1e-14 * speed(setting, v)):
             if eps <= least:
                 idle += 1
                 if idle > 4 and best[BOUND] > 0.5 * old:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 
-__all__ = ["Metric", "as_array", "as_points", "as_rows", "lifted", "read_metric"]
+__all__ = ["Metric", "as_array", "as_points", "as_rows", "check_effort", "lifted", "read_metric"]
 
 Array = NDArray[np.float64]
 
@@ -63,6 +64,14 @@ def as_rows(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ..
     rows = np.ascontiguousarray(points.reshape(-1, dim))
     # kernels are compiled anew for read-only arrays
     return rows if rows.flags.writeable else rows.copy(), points.shape[:-1]
+
+
+def check_effort(tol: float, threads: int) -> None:
+    """Check a relative tolerance and a number of threads."""
+    if not 0.0 < tol < 1.0:
+        raise InputError("tol", "must lie between 0 and 1", value=tol)
+    if not isinstance(threads, Integral) or threads < 1:
+        raise InputError("threads", "must be a whole number from 1 on", value=threads)
 
 
 @dataclass(frozen=True, eq=False)

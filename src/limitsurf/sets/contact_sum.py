@@ -27,7 +27,14 @@ from limitsurf.kernels.project_loads import (
     contact_numbers,
     project_loads,
 )
-from limitsurf.sets.arguments import Metric, as_array, as_points, as_rows, read_metric
+from limitsurf.sets.arguments import (
+    Metric,
+    as_array,
+    as_points,
+    as_rows,
+    check_effort,
+    read_metric,
+)
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM
@@ -232,9 +239,9 @@ class ContactSum(ConvexSet):
         """Return the same contacts seen from another point or turned, if M says that; else None."""
         turn = matrix[:2, :2] if matrix.shape == (3, 3) else np.zeros((2, 2))
         rigid = np.allclose(turn @ turn.T, np.eye(2), rtol=0.0, atol=1e-14)
-        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.linalg.det(turn):
+        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.round(np.linalg.det(turn)):
             return None
-        shift = np.array([matrix[2] @ [0, 1, 0], -matrix[2] @ [1, 0, 0]])  # in the old axes
+        shift = matrix[2, 2] * np.array([matrix[2, 1], -matrix[2, 0]])  # in the old axes
         places = (self.position + shift) @ turn.T
         return ContactSum(places, self._radius, matrix @ self._center + offset, self._turned(turn))
 
@@ -314,8 +321,7 @@ class ContactSum(ConvexSet):
         points, shape = as_rows("p", p, 3)
         W = read_metric(metric, 3)
         tol = CONTACT_SUM if tol is None else tol
-        if not 0.0 < tol < 1.0:
-            raise InputError("tol", "must lie between 0 and 1", value=tol)
+        check_effort(tol, threads)
         starts = _NOTHING_KNOWN if start is None else self._starts(start, len(points))
         if self._by_tree(sublinear, len(points)):
             data, moments = self._tree
@@ -339,10 +345,12 @@ class ContactSum(ConvexSet):
 
     def _starts(self, start: ArrayLike | Projection, k: int) -> Array:
         """Return rows ``v, eps`` about the centroid; eps = -1 where nothing is known."""
+        known = start.twist if isinstance(start, Projection) else start
+        twists, shape = as_points("start", known, 3)
+        if len(twists) not in (1, k):
+            raise InputError("start", f"has shape {(*shape, 3)}: one for each load, or one for all")
         if isinstance(start, ContactProjection):
             return np.array(np.broadcast_to(start.answers[:, WITNESSES][:, :4], (k, 4)))
-        known = start.twist if isinstance(start, Projection) else start
-        twists, _ = as_points("start", known, 3)
         vx, vy, w = -np.broadcast_to(twists, (k, 3)).T
         cx, cy = self._centroid
         moving = np.where((vx != 0.0) | (vy != 0.0) | (w != 0.0), 0.0, COLD)
