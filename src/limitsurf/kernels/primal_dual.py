@@ -31,7 +31,7 @@ from limitsurf.kernels.contact_problem import (
     residual,
     speed,
 )
-from limitsurf.kernels.kink_polish import polish_kinks
+from limitsurf.kernels.kink_polish import force_gap, polish_kinks, velocity_rounding
 from limitsurf.kernels.symmetric3 import Symmetric, form, plus, plus_outer, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, length
 
@@ -95,27 +95,9 @@ def _pass(
             moving = along(along(moving, m * ux / size, one), m * uy / size, two)
         else:
             moving = along(along(moving, fx, one), fy, two)
-            if size > _velocity_rounding(one, two, v):
-                gap += _gap(m, fx / m, fy / m, ux, uy, size)
+            if size > velocity_rounding(one, two, v):
+                gap += force_gap(m, fx / m, fy / m, ux, uy, size)
     return h, g, A, moving, resting, gap
-
-
-@compiled
-def _velocity_rounding(one: Vector, two: Vector, v: Vector) -> float:
-    """Return what rounding makes of the velocity of a contact that stands still."""
-    arms = 0.0
-    for k in range(3):
-        arms += (abs(one[k]) + abs(two[k])) * abs(v[k])
-    return 4.0 * _EPS * arms
-
-
-@compiled
-def _gap(m: float, fx: float, fy: float, ux: float, uy: float, size: float) -> float:
-    """Return ``2 m (|u| - f.u)``, f in the unit disk, without cancellation."""
-    if size == 0.0:
-        return 0.0
-    apart = (ux / size - fx) ** 2 + (uy / size - fy) ** 2
-    return m * size * (apart + max(1.0 - fx * fx - fy * fy, 0.0))
 
 
 @compiled
