@@ -42,6 +42,7 @@ __all__ = [
     "kink_of",
     "new_table",
     "smoothed_sums",
+    "stretch_of",
     "sum_error",
 ]
 
@@ -101,6 +102,7 @@ def sum_error(n: int) -> float:
 
 @compiled
 def stretch_of(contacts: Contacts, i: int) -> Vector:
+    """Return xx, xy, yy of S of contact i."""
     data = contacts.data
     if data.shape[0] == 3:
         return 1.0, 0.0, 1.0
