@@ -122,7 +122,7 @@ def test_wheels_that_push_along_one_line(rng, n):
 
 def test_polygons_tend_to_the_disks_from_inside(rng):
     disks = contacts(rng, 3, offset=rng.normal(size=(3, 2)))
-    d = rng.normal(size=(2000, 3))
+    d = rng.normal(size=(400, 3))
     d /= np.linalg.norm(d, axis=1)[:, None]
     missing = []
     for sides in (12, 24, 48, 96):

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Contacts, contact_velocity, kink_of
+from limitsurf.kernels.contact_pass import Contacts, contact_velocity, kink_of, stretch_of
 from limitsurf.kernels.contact_problem import (
     BOUND,
     CERTIFIED,
@@ -165,17 +165,17 @@ def witness_forces(contacts: Contacts, best: Floats, forces: Floats) -> None:
     """Fill the forces (N, 2) of the witness of an answer that `primal_dual` did not find."""
     v, eps = (best[WITNESS], best[WITNESS + 1], best[WITNESS + 2]), best[EPS]
     x, y, m, j = contacts.data[0], contacts.data[1], contacts.data[2], int(best[KINK])
-    shared = 0.0
+    shared, at_kink = 0.0, stretch_of(contacts, max(j, 0))
     for i in range(x.shape[0]):
         ux, uy = contact_velocity(contacts, i, v)
         s = math.sqrt(ux * ux + uy * uy + eps * eps)
         k = m[i] / s if s > 0.0 else 0.0
         forces[i, 0], forces[i, 1] = k * ux, k * uy
-        if j >= 0 and x[i] == x[j] and y[i] == y[j]:
+        if j >= 0 and x[i] == x[j] and y[i] == y[j] and stretch_of(contacts, i) == at_kink:
             shared += m[i]
-    if j < 0:
+    if j < 0 or shared == 0.0:
         return
     for i in range(x.shape[0]):
-        if x[i] == x[j] and y[i] == y[j]:
+        if x[i] == x[j] and y[i] == y[j] and stretch_of(contacts, i) == at_kink:
             forces[i, 0] = best[KINK_FORCE] * m[i] / shared
             forces[i, 1] = best[KINK_FORCE + 1] * m[i] / shared
