@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from limitsurf.contacts.friction_load import FrictionLoad as FrictionLoad
     from limitsurf.contacts.friction_load import friction_load as friction_load
     from limitsurf.contacts.lattice_contacts import LatticeContacts as LatticeContacts
+    from limitsurf.contacts.oscillating_contact import OscillatingContact as OscillatingContact
     from limitsurf.contacts.project_many import project_many as project_many
+    from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
@@ -60,10 +62,12 @@ _HOME = {
     "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
     "MinkowskiSum": "sets.minkowski_sum",
+    "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
     "PolynomialSet": "sets.polynomial_set",
     "Projection": "sets.projection",
     "SqueezeFunction": "planning.squeeze_function",
+    "TipDissipation": "contacts.tip_dissipation",
     "Trajectory": "motion.trajectory",
     "TurnFunction": "planning.turn_function",
     "VPolytope": "sets.v_polytope",
