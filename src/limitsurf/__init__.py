@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from limitsurf.contacts.friction_load import FrictionLoad as FrictionLoad
     from limitsurf.contacts.friction_load import friction_load as friction_load
     from limitsurf.contacts.lattice_contacts import LatticeContacts as LatticeContacts
+    from limitsurf.contacts.load_sharing import LoadShare as LoadShare
+    from limitsurf.contacts.load_sharing import share_load as share_load
     from limitsurf.contacts.oscillating_contact import OscillatingContact as OscillatingContact
     from limitsurf.contacts.project_many import project_many as project_many
     from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
@@ -61,6 +63,7 @@ _HOME = {
     "HPolytope": "sets.h_polytope",
     "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
+    "LoadShare": "contacts.load_sharing",
     "MinkowskiSum": "sets.minkowski_sum",
     "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
@@ -80,6 +83,7 @@ _HOME = {
     "plan_alignment": "planning.alignment",
     "polygonal_contact": "contacts.coulomb",
     "project_many": "contacts.project_many",
+    "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",
     "squeeze_activation": "actuators.activation",
     "squeeze_function": "planning.squeeze_function",

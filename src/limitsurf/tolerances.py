@@ -14,6 +14,7 @@ __all__ = [
     "CONTACT_SUM",
     "FLATTEN",
     "FLAT_MOMENT",
+    "GIVEN_LOAD",
     "LINE_MARGIN",
     "REST_SPEED",
     "SHARED_LOAD",
@@ -54,3 +55,6 @@ TIP_AT_REST: Final = 1e-12
 #: Forces and moments that shared loads may leave unbalanced, relative to the weight and to the size
 #: of the support: rounding of the sums over a million contacts.
 SHARED_LOAD: Final = 1e-12
+
+#: The same for loads that a user gives: sums of numbers with nine digits.
+GIVEN_LOAD: Final = 1e-9
