@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
-from limitsurf.sets.hulls import affine_hull
+from limitsurf.sets.flat_outline import ring_outline
 
 __all__ = ["reach_outline"]
 
@@ -53,7 +53,7 @@ def reach_outline(tip: _Tip, speed: float, tol: float) -> shapely.Geometry:
 
     upper = _refined(image, tol * size)
     ring = np.concatenate([upper, upper[-2:0:-1] * [1.0, -1.0]]) @ frame
-    return _outlined(ring, 1e-12 * size)
+    return ring_outline(ring, 1e-12 * size)
 
 
 def _refined(image: Callable[[Array], Array], tol: float) -> Array:
@@ -82,15 +82,3 @@ def _off_chord(point: Array, start: Array, end: Array) -> Array:
     length2 = np.maximum((along**2).sum(axis=1), 1e-300)
     share = np.clip((to * along).sum(axis=1) / length2, 0.0, 1.0)
     return np.asarray(np.linalg.norm(to - share[:, None] * along, axis=1))
-
-
-def _outlined(ring: Array, rounding: float) -> shapely.Geometry:
-    """Return a polygon; a segment or point where the ring is thinner than rounding."""
-    _, within, _ = affine_hull(ring)
-    spread = [float(np.ptp(ring @ axis)) for axis in within]
-    if len(within) == 2 and min(spread) > rounding:
-        return shapely.make_valid(shapely.Polygon(ring))
-    if max(spread, default=0.0) <= rounding:
-        return shapely.Point(ring.mean(axis=0))
-    along = ring @ within[int(np.argmax(spread))]
-    return shapely.LineString(ring[[int(along.argmin()), int(along.argmax())]])
