@@ -51,10 +51,10 @@ def main():
     """Print times for all tips, the ratio, and how far the two differ."""
     tips, u = tips_and_velocities(np.random.default_rng(0))
     e, w, N = tips.direction.copy(), tips.tip_velocity.copy(), tips.mu[:, None] * tips.normal_force
-    which, width = np.arange(TIPS, dtype=np.int32), np.full(TIPS, 1e-6)
+    which = np.arange(TIPS, dtype=np.int32)
     out = np.empty((TIPS, SUMS))
-    tip_sums(u[:1], which[:1], e, w, N, width, False, out)
-    kernel, _ = timed(lambda: tip_sums(u, which, e, w, N, width, False, out))
+    tip_sums(u[:1], which[:1], e, w, N, 1e-6, 0.0, False, out)
+    kernel, _ = timed(lambda: tip_sums(u, which, e, w, N, 1e-6, 0.0, False, out))
     tips.moving_sums(u)
     whole, _ = timed(lambda: tips.moving_sums(u))
     loop, slow = timed(

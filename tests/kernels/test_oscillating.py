@@ -8,10 +8,10 @@ from limitsurf.kernels.drift import drift_speeds
 from limitsurf.kernels.oscillating import SUMS, tip_sums
 
 
-def sums_of(u, e, w, N, width=1e-12):
+def sums_of(u, e, w, N, width=1e-12, blur=0.0):
     out = np.empty((1, SUMS))
     arrays = [np.array([a], dtype=float) for a in (u, e, w, N)]
-    tip_sums(arrays[0], np.zeros(1, np.int32), *arrays[1:], np.array([width]), False, out)
+    tip_sums(arrays[0], np.zeros(1, np.int32), *arrays[1:], width, blur, False, out)
     return out[0]
 
 

@@ -144,11 +144,11 @@ def _with_dissipation(
         if share == 1.0 and np.linalg.norm(rest) <= 1e-12 * (np.linalg.norm(F) + abs(lowest)):
             break
     assert projection is not None
-    left = float(np.sqrt(rest @ np.linalg.solve(Q, rest)))
-    if share < 1e-6 and left > 1e-6 * np.linalg.norm(F):
-        raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     rate = -smooth.gradient(v)
     friction = projection.point
+    left, *parts = (float(np.sqrt(x @ np.linalg.solve(Q, x))) for x in (rest, F, rate, friction))
+    if left > 1e-6 * sum(parts):
+        raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     sticks = np.asarray(not v.any())
     net = F + friction + rate
     return FrictionLoad(friction, net, sticks, projection, rate)

@@ -238,12 +238,20 @@ class OscillatingContact:
         e, w, N = (np.array(a, order="C") for a in rows)
         return e, w, N
 
-    def moving_sums(self, u: ArrayLike) -> Array:
-        """Return Phi, its gradient and its Hessian's xx, xy, yy (..., 6) without rest phases."""
-        return self._sums(u, moving_only=True)
+    def moving_sums(self, u: ArrayLike, blur: float = 0.0) -> Array:
+        """Return Phi, its gradient and its Hessian's xx, xy, yy (..., 6) without rest phases.
+
+        With `blur` > 0 [m/s] all are those of ``mean(mu N sqrt(|u - w e|^2 + blur^2))``.
+        """
+        return self._sums(u, blur=blur, moving_only=True)
 
     def _sums(
-        self, u: ArrayLike, width: float | None = None, *, moving_only: bool = False
+        self,
+        u: ArrayLike,
+        width: float | None = None,
+        *,
+        blur: float = 0.0,
+        moving_only: bool = False,
     ) -> Array:
         """Return (..., 6): Phi, gradient and Hessian entries xx, xy, yy."""
         rows, leading = as_points("u", u, 2)
@@ -256,17 +264,22 @@ class OscillatingContact:
         which = np.array(np.broadcast_to(number, shape)).reshape(-1)
         e, w, N = self._rows
         out = np.empty((len(which), SUMS))
-        tip_sums(velocities.reshape(-1, 2), which, e, w, N, self._widths(width), moving_only, out)
+        tip_sums(
+            velocities.reshape(-1, 2), which, e, w, N, self._width(width), blur, moving_only, out
+        )
         return out.reshape(*shape, SUMS)
 
-    def _widths(self, width: float | None) -> Array:
-        w = self._rows[1]
+    @cached_property
+    def fastest(self) -> float:
+        """Largest tip speed [m/s]."""
+        return float(np.abs(self._w).max(initial=0.0))
+
+    def _width(self, width: float | None) -> float:
         if width is None:
-            fastest = float(np.abs(w).max(initial=0.0))
-            width = TIP_WIDTH * fastest if fastest > 0.0 else TIP_AT_REST
-        elif not (np.isfinite(width) and width > 0.0):
+            return TIP_WIDTH * self.fastest if self.fastest > 0.0 else TIP_AT_REST
+        if not (np.isfinite(width) and width > 0.0):
             raise InputError("width", "must be positive", value=width)
-        return np.full(len(w), float(width))
+        return float(width)
 
     def _check_single(self, query: str) -> None:
         if self.shape:

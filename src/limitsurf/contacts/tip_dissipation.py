@@ -9,6 +9,7 @@ from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import InputError
 from limitsurf.sets.arguments import as_array
+from limitsurf.tolerances import TIP_WIDTH
 
 __all__ = ["TipDissipation"]
 
@@ -28,28 +29,32 @@ class TipDissipation:
         Tips, from the part's reference point [m].
     tips : OscillatingContact
         n tips.
-
-    Notes
-    -----
-    A tip that keeps a constant speed other than 0 for a part of the period has a kink at that
-    slip; it is not split off, and `friction_load` converges slowly, or fails, where the
-    part moves exactly with it.
+    blur : float, optional
+        Speed [m/s] below which slip is smoothed, ``sqrt(|u - w e|^2 + blur^2)`` for ``|u - w e|``,
+        except in rest phases; loads change by about its ratio to the tips' speeds. By default 1e-6
+        of the largest tip speed. With 0 the potential is exact, but has a kink where the part
+        moves just as a tip that keeps a constant speed for a while, and `friction_load` may fail.
 
     Examples
     --------
     >>> tips = OscillatingContact(0.5, [[1, 0], [1, 0]], [0.0, 2.0, 1.0, -3.0], 1.0)
     >>> d = TipDissipation([[0.0, 0.1], [0.0, -0.1]], tips)
-    >>> d.gradient(np.zeros(3)).round(12)  # minus their load: they push along x
+    >>> d.gradient(np.zeros(3)).round(6)  # minus their load: they push along x
     array([-0.125,  0.   ,  0.   ])
-    >>> d.potential(np.array([5.0, 0.0, 0.0])).round(12)
+    >>> d.potential(np.array([5.0, 0.0, 0.0])).round(6)
     np.float64(5.0)
     """
 
-    def __init__(self, position: ArrayLike, tips: OscillatingContact) -> None:
+    def __init__(
+        self, position: ArrayLike, tips: OscillatingContact, *, blur: float | None = None
+    ) -> None:
         self._position = as_array("position", position, None, 2)
         if tips.shape != (len(self._position),):
             raise InputError("tips", f"have shape {tips.shape}, not ({len(self._position)},)")
-        self._tips = tips
+        blur = TIP_WIDTH * tips.fastest if blur is None else blur
+        if not (np.isfinite(blur) and blur >= 0.0):
+            raise InputError("blur", "must be at least 0", value=blur)
+        self._tips, self._blur = tips, float(blur)
         self._last: tuple[bytes, float, Array, Array] | None = None
 
     @property
@@ -61,6 +66,11 @@ class TipDissipation:
     def tips(self) -> OscillatingContact:
         """The tips."""
         return self._tips
+
+    @property
+    def blur(self) -> float:
+        """Speed below which slip is smoothed [m/s]."""
+        return self._blur
 
     @property
     def resting(self) -> ContactSet:
@@ -90,7 +100,7 @@ class TipDissipation:
     def _sum(self, v: Array) -> tuple[float, Array, Array]:
         x, y = self._position.T
         u = np.column_stack([v[0] - v[2] * y, v[1] + v[2] * x])
-        phi, gx, gy, xx, xy, yy = self._tips.moving_sums(u).T
+        phi, gx, gy, xx, xy, yy = self._tips.moving_sums(u, self._blur).T
         gradient = np.array([gx.sum(), gy.sum(), x @ gy - y @ gx])
         px, py = x * xy - y * xx, x * yy - y * xy  # the force that a turn adds
         hessian = np.array(

@@ -144,13 +144,25 @@ def _tip(w: Floats, N: Floats, p: float, q: float, width: float, work: Floats) -
 
 
 @compiled
+def _blurred_tip(w: Floats, N: Floats, p: float, q: float, blur: float, work: Floats) -> Sums:
+    """Return the sums with ``sqrt(|u - w e|^2 + blur^2)`` for the distance: smooth everywhere."""
+    away = math.sqrt(q * q + blur * blur)
+    _slips(w, p, away, work)
+    _excesses(w.shape[0], work)
+    phi, gp, gq, hpp, hpq, hqq = _add_up(N, away, work, work[7])
+    along, across = q / away, blur / away
+    return phi, gp, along * gq, hpp, along * hpq, hqq + across * across * hpp
+
+
+@compiled
 def tip_sums(
     u: Floats,
     which: Ints,
     direction: Floats,
     w: Floats,
     N: Floats,
-    width: Floats,
+    width: float,
+    blur: float,
     moving_only: bool,
     out: Floats,
 ) -> None:
@@ -168,10 +180,12 @@ def tip_sums(
         Unit vectors e.
     w, N : (n, K) float
         Tip velocities and friction radii (mu times normal force) at the samples.
-    width : (n,) float
+    width : float
         Closer than this to the line of e the Hessian is that at this distance, its entry along
         and across falling linearly to 0 on the line, and that across rising by the share
         ``1 - (q/width)^2`` of that along: so a tip at rest gets N/width in all directions.
+    blur : float
+        If positive, the distance is ``sqrt(|u - w e|^2 + blur^2)`` all over, and `width` unused.
     moving_only : bool
         Leave out the pieces in which the tip rests.
     out : (m, 6) float
@@ -186,7 +200,10 @@ def tip_sums(
             work[7, k] = 0.0 if moving_only and rests else 1.0 / K
         ex, ey = direction[j, 0], direction[j, 1]
         p, q = u[i, 0] * ex + u[i, 1] * ey, u[i, 1] * ex - u[i, 0] * ey
-        phi, gp, gq, hpp, hpq, hqq = _tip(w[j], N[j], p, q, width[j], work)
+        if blur > 0.0:
+            phi, gp, gq, hpp, hpq, hqq = _blurred_tip(w[j], N[j], p, q, blur, work)
+        else:
+            phi, gp, gq, hpp, hpq, hqq = _tip(w[j], N[j], p, q, width, work)
         out[i, 0] = phi
         out[i, 1], out[i, 2] = gp * ex - gq * ey, gp * ey + gq * ex
         out[i, 3] = hpp * ex * ex - 2.0 * hpq * ex * ey + hqq * ey * ey
