@@ -145,3 +145,32 @@ def test_a_hundred_thousand_supports(rng):
     assert share.residual <= 1e-12
     assert share.iterations < 20
     assert "minimum-norm" in repr(share)
+
+
+def awkward(rng, kind, n):
+    """Return grids with ties, lines, thin strips, clusters with an outlier, and any scale."""
+    places = rng.normal(size=(n, 2))
+    if kind == "grid":
+        return rng.integers(-3, 4, (n, 2)).astype(float)
+    if kind == "line":
+        return np.outer(rng.normal(size=n), [0.3, -0.7]) + np.array([2.0, 1.0])
+    if kind == "strip":
+        return places * np.array([1.0, 1e-6]) @ np.array([[0.6, 0.8], [-0.8, 0.6]])
+    if kind == "cluster":
+        return np.vstack([1e-4 * places, rng.normal(size=(1, 2))])
+    return 10.0 ** rng.uniform(-9, 9) * places
+
+
+@pytest.mark.parametrize("kind", ["grid", "line", "strip", "cluster", "any scale"])
+def test_awkward_supports_balance_too(rng, kind):
+    for _ in range(300):
+        places = awkward(rng, kind, int(rng.integers(1, 40)))
+        some = rng.dirichlet(np.full(len(places), 10.0 ** rng.uniform(-1, 1)))
+        share = share_load(places, 1.0, some @ places)
+        assert share.residual <= 5e-12
+        assert share.normal_force @ share.normal_force <= some @ some * (1 + 1e-8)
+
+
+def test_nothing_to_carry_is_no_error():
+    for rule in ("minimum-norm", "three-point"):
+        assert not share_load(LEGS[:3], 1.0, [9.0, 9.0], rule, lift=1.0).normal_force.any()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,8 @@ from limitsurf.tolerances import GIVEN_LOAD, SHARED_LOAD
 __all__ = ["LoadShare", "share_load"]
 
 Array = NDArray[np.float64]
+_EPS = float(np.finfo(np.float64).eps)
+
 Rule = Literal["equal", "minimum-norm", "three-point"]
 
 
@@ -116,16 +118,39 @@ def share_load(
     carried = _carried(weight, lift)
     if len(places) == 0:
         raise InputError("positions", "are missing", remedy="give at least one support")
-    arms = places - center
+    arms = _arms(places, center)
     if not isinstance(rule, str):
         return _given(arms, carried, rule)
+    if carried == 0.0 and rule in ("minimum-norm", "three-point"):
+        return _share(arms, 0.0, np.zeros(len(places)), rule)
     if rule == "equal":
-        return _share(arms, carried, np.full(len(arms), carried / len(arms)), rule)
+        return _share(arms, carried, np.full(len(places), carried / len(places)), rule)
     if rule == "three-point":
-        return _share(arms, carried, _three_point(arms, carried, center), rule)
+        return _share(arms, carried, _three_point(arms, carried), rule)
     if rule == "minimum-norm":
-        return _minimum_norm(arms, carried, center)
+        return _minimum_norm(arms, carried)
     raise InputError("rule", "is unknown", value=rule, remedy="equal, minimum-norm or three-point")
+
+
+@dataclass(frozen=True, eq=False)
+class _Arms:
+    """Supports about the centre of mass.
+
+    `xy` is (2, n), `reach` the largest distance, `noise` how far rounding moves a support.
+    """
+
+    xy: Array
+    center: Array
+    reach: float
+    noise: float
+
+
+def _arms(places: Array, center: Array) -> _Arms:
+    xy = places.T - center[:, None]
+    reach = float(np.sqrt((xy[0] ** 2 + xy[1] ** 2).max())) or 1.0
+    noise = 4.0 * _EPS * (reach + float(np.abs(center).max()))
+    xy[np.abs(xy) <= noise] = 0.0
+    return _Arms(np.ascontiguousarray(xy), center, reach, noise)
 
 
 def _carried(weight: float, lift: float) -> float:
@@ -138,19 +163,15 @@ def _carried(weight: float, lift: float) -> float:
     return float(weight) * (1.0 - float(lift))
 
 
-def _share(arms: Array, carried: float, loads: Array, rule: str) -> LoadShare:
-    imbalance = np.array([loads.sum() - carried, *(loads @ arms)])
-    scale = np.array([1.0, *np.full(2, _reach(arms))]) * (carried or 1.0)
+def _share(arms: _Arms, carried: float, loads: Array, rule: str) -> LoadShare:
+    imbalance = np.array([loads.sum() - carried, *(arms.xy @ loads)])
+    scale = np.array([1.0, arms.reach, arms.reach]) * (carried or 1.0)
     residual = float(np.linalg.norm(imbalance / scale))
     return LoadShare(loads, carried, imbalance, residual, rule)
 
 
-def _reach(arms: Array) -> float:
-    return float(np.hypot(arms[:, 0], arms[:, 1]).max()) or 1.0
-
-
-def _given(arms: Array, carried: float, rule: ArrayLike) -> LoadShare:
-    loads = as_array("rule", rule, len(arms))
+def _given(arms: _Arms, carried: float, rule: ArrayLike) -> LoadShare:
+    loads = as_array("rule", rule, arms.xy.shape[1])
     if (loads < 0.0).any():
         raise InputError(
             "rule", "has negative loads", value=float(loads.min()), remedy="supports only push"
@@ -166,46 +187,57 @@ def _given(arms: Array, carried: float, rule: ArrayLike) -> LoadShare:
     return share
 
 
-def _three_point(arms: Array, carried: float, center: Array) -> Array:
-    if len(arms) != 3:
+def _three_point(arms: _Arms, carried: float) -> Array:
+    x, y = arms.xy
+    if len(x) != 3:
         raise InputError(
-            "positions", f"are {len(arms)}, not three supports", remedy="take rule minimum-norm"
+            "positions", f"are {len(x)}, not three supports", remedy="take rule minimum-norm"
         )
-    after, before = np.roll(arms, -1, axis=0), np.roll(arms, -2, axis=0)
-    opposite = after[:, 0] * before[:, 1] - after[:, 1] * before[:, 0]  # triangles seen from c
+    opposite = np.roll(x, -1) * np.roll(y, -2) - np.roll(y, -1) * np.roll(
+        x, -2
+    )  # areas seen from c
     area = opposite.sum()
-    rounding = 1e-14 * _reach(arms) ** 2
+    rounding = arms.noise * arms.reach
     if abs(area) <= rounding:
         raise InputError(
             "positions", "lie on a line: not statically determinate", remedy="rule minimum-norm"
         )
     shares = opposite / area
     if (shares * abs(area) < -rounding).any():
-        raise _outside(arms, center)
+        raise _outside(arms)
     return np.asarray(carried * np.maximum(shares, 0.0))
 
 
-def _minimum_norm(arms: Array, carried: float, center: Array) -> LoadShare:
-    n, reach = len(arms), _reach(arms)
-    x, y = np.array(arms.T / reach, order="C")
-    lam, _, steps, balanced = share_minimum_norm(x, y, (float(n), 0.0, 0.0), SHARED_LOAD)
+def _minimum_norm(arms: _Arms, carried: float) -> LoadShare:
+    A = _principal(arms)
+    x, y = A @ arms.xy
+    blur = SHARED_LOAD + arms.noise * np.abs(A).max(axis=1)
+    lam, steps, balanced = share_minimum_norm(x, y, (SHARED_LOAD, float(blur[0]), float(blur[1])))
     if not balanced:
-        if _distance(arms) > 1e-14 * reach:
-            raise _outside(arms, center)
+        if _distance(arms) > arms.noise:
+            raise _outside(arms)
         raise SolveFailed("share_load: the loads do not balance to rounding", best=np.array(lam))
-    unit = carried / n
+    unit = carried / len(x)
     loads = np.maximum(lam[0] + lam[1] * x + lam[2] * y, 0.0) * unit
-    found = _share(arms, carried, loads, "minimum-norm")
-    multipliers = unit * np.array([lam[0], lam[1] / reach, lam[2] / reach])
-    return LoadShare(
-        loads, carried, found.imbalance, found.residual, found.rule, multipliers, steps
+    multipliers = unit * np.array([lam[0], *(lam[1:] @ A)])
+    return replace(
+        _share(arms, carried, loads, "minimum-norm"), multipliers=multipliers, iterations=steps
     )
 
 
-def _distance(arms: Array) -> float:
-    hull = shapely.convex_hull(shapely.multipoints(arms))
+def _principal(arms: _Arms) -> Array:
+    """Return a map (2, 2) to principal axes, of root mean square 1; zero where that is rounding."""
+    _, turn = np.linalg.eigh(arms.xy @ arms.xy.T)
+    turned = turn.T @ arms.xy
+    spread = np.sqrt(np.einsum("ij,ij->i", turned, turned) / arms.xy.shape[1])
+    scale = np.divide(1.0, spread, out=np.zeros(2), where=spread > arms.noise)
+    return np.asarray(scale[:, None] * turn.T)
+
+
+def _distance(arms: _Arms) -> float:
+    hull = shapely.convex_hull(shapely.multipoints(arms.xy.T))
     return float(shapely.distance(hull, shapely.Point(0.0, 0.0)))
 
 
-def _outside(arms: Array, center: Array) -> OutsideSupports:
-    return OutsideSupports(tuple(center.tolist()), _distance(arms))
+def _outside(arms: _Arms) -> OutsideSupports:
+    return OutsideSupports(tuple(arms.center.tolist()), _distance(arms))

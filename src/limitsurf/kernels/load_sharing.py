@@ -20,9 +20,10 @@ from limitsurf.kernels.vectors import Vector, along, dot
 
 __all__ = ["share_minimum_norm"]
 
-_STEPS = 100
-_RIDGE = 1e-14  # relative to the diagonal: contacts on a line or a point leave H singular
-_SUFFICIENT = 1e-4
+_STEPS = 300
+_RIDGE = 1e-14  # of each diagonal entry: contacts on a line or a point leave H singular
+_DAMPING = 0.001  # relative to the imbalance: long steps help nobody while H is nearly singular
+_OVERSHOT, _HALVINGS = 0.3, 60  # slopes decide where the objective no longer shows a difference
 
 
 @compiled
@@ -55,44 +56,49 @@ def _size(v: Vector) -> float:
 
 
 @compiled
-def share_minimum_norm(
-    x: Floats, y: Floats, b: Vector, tol: float
-) -> tuple[Vector, Vector, int, bool]:
-    """Return multipliers, imbalance, Newton steps, and whether the imbalance meets `tol`.
+def _within(g: Vector, n: float, tol: Vector) -> bool:
+    return abs(g[0]) <= tol[0] * n and abs(g[1]) <= tol[1] * n and abs(g[2]) <= tol[2] * n
+
+
+@compiled
+def share_minimum_norm(x: Floats, y: Floats, tol: Vector) -> tuple[Vector, int, bool]:
+    """Return multipliers for the mean load 1, Newton steps, and whether the loads balance.
 
     Parameters
     ----------
     x, y : (n,) float
-        Supports about the centre of mass, of size 1.
-    b : (3,) float
-        Force and moments, of size n.
-    tol : float
-        Largest imbalance relative to |b|. Without loads in equilibrium the multipliers diverge.
+        Supports about the centre of mass; best along their principal axes, of size 1 on each. The
+        loads do not depend on linear maps of the plane, their rounding does.
+    tol : (3,) float
+        Largest imbalance of force and moments, relative to n. Without loads in equilibrium the
+        multipliers diverge. Steps go on until rounding stops them.
     """
-    lam: Vector = (b[0] / max(x.shape[0], 1), 0.0, 0.0)
+    n = float(x.shape[0])
+    b: Vector = (n, 0.0, 0.0)
+    lam: Vector = (1.0, 0.0, 0.0)
     value, g, H = _pass(x, y, b, lam)
     best, left, steps = lam, g, 0
-    while steps < _STEPS:
-        if _size(g) < _size(left) or steps == 0:
-            best, left = lam, g
-        elif _size(left) <= tol * _size(b):
-            break  # rounding is reached
-        if _size(left) == 0.0:
-            break
-        ridge = _RIDGE * (H[0] + H[2] + H[5]) + 1e-300
-        damped = (H[0] + ridge, H[1], H[2] + ridge, H[3], H[4], H[5] + ridge)
+    while steps < _STEPS and _size(left) > 0.0:
+        more = 1.0 + _RIDGE + _DAMPING * _size(g) / n
+        damped = (more * H[0], H[1], more * H[2] + 1e-300, H[3], H[4], more * H[5] + 1e-300)
         ok, down = solved(damped, (-g[0], -g[1], -g[2]))
         slope = dot(g, down)
         if not ok or not slope < 0.0:
             break
-        share = 1.0
-        new = along(lam, share, down)
-        found, g, H = _pass(x, y, b, new)
         noise = 1e-15 * (abs(value) + abs(dot(b, lam)))
-        while found > value + _SUFFICIENT * share * slope + noise and share > 1e-12:
-            share *= 0.5
+        share = 1.0
+        for _ in range(_HALVINGS):
             new = along(lam, share, down)
             found, g, H = _pass(x, y, b, new)
+            ahead = dot(g, down)
+            if ahead <= -_OVERSHOT * slope and found <= value + noise:
+                break
+            part = slope / (slope - ahead) if ahead > 0.0 else 0.5
+            share *= min(max(part, 0.1), 0.9)
         lam, value = new, found
         steps += 1
-    return best, left, steps, _size(left) <= tol * _size(b)
+        if _size(g) < _size(left):
+            best, left = lam, g
+        elif _within(left, n, tol):
+            break
+    return best, steps, _within(left, n, tol)
