@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["InputError", "LimitSurfError", "ModelError", "NoPlan", "PartTooHeavy", "SolveFailed"]
+__all__ = [
+    "InputError",
+    "LimitSurfError",
+    "ModelError",
+    "NoPlan",
+    "OutsideSupports",
+    "PartTooHeavy",
+    "SolveFailed",
+]
 
 
 class LimitSurfError(Exception):
@@ -64,6 +72,26 @@ class PartTooHeavy(LimitSurfError):
         super().__init__(
             f"voltage: {voltage:g} V lifts {vertical_force:.3g} N per active tip, but the part "
             f"puts {weight_per_tip:.3g} N on each; {lifting_voltage:.3g} V would lift it"
+        )
+
+
+class OutsideSupports(LimitSurfError):
+    """No supports that only push can carry a part whose centre of mass they do not surround.
+
+    Parameters
+    ----------
+    center_of_mass : (2,) float
+        Where it is [m].
+    distance : float
+        How far outside the convex hull of the supports [m].
+    """
+
+    def __init__(self, center_of_mass: tuple[float, ...], distance: float) -> None:
+        self.center_of_mass, self.distance = center_of_mass, distance
+        where = ", ".join(f"{c:.4g}" for c in center_of_mass)
+        super().__init__(
+            f"the centre of mass is outside the supports: ({where}) m lies {distance:.3g} m beyond "
+            "their convex hull; add a support there or move the part"
         )
 
 
