@@ -132,10 +132,11 @@ def a_million():
     arrays = *(np.ascontiguousarray(a) for a in place.T), radius, *np.ascontiguousarray(offset.T)
     read_once(*arrays)
     floor, _ = timed(lambda: read_once(*arrays), 31)
+    rng = np.random.default_rng(3)
+    loads = [CASES["sliding"](rng, place, radius)[0] for _ in range(7)]
     tracemalloc.start()
     surface = ls.ContactSet(place, radius, offset).limit_surface()
-    rng = np.random.default_rng(3)
-    loads = [CASES["sliding"](rng, place, radius)[0] + surface.center for _ in range(7)]
+    loads = [load + surface.center for load in loads]
     surface.project(loads[0])
     peak = tracemalloc.get_traced_memory()[1] / sum(a.nbytes for a in arrays)
     tracemalloc.stop()

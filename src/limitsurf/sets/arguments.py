@@ -61,16 +61,17 @@ def as_rows(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ..
         raise InputError(name, "is no array of numbers", remedy="check its entries") from error
     if points.ndim == 0 or points.shape[-1] != dim:
         raise InputError(name, f"has shape {points.shape}, not (..., {dim})")
-    rows = np.ascontiguousarray(points.reshape(-1, dim))
-    # kernels are compiled anew for read-only arrays
-    return rows if rows.flags.writeable else rows.copy(), points.shape[:-1]
+    rows = points.reshape(-1, dim)
+    flags = rows.flags  # kernels are compiled anew for read-only arrays and for gaps
+    ready = flags.writeable and flags.c_contiguous
+    return rows if ready else np.array(rows, order="C"), points.shape[:-1]
 
 
 def check_effort(tol: float, threads: int) -> None:
     """Check a relative tolerance and a number of threads."""
     if not 0.0 < tol < 1.0:
         raise InputError("tol", "must lie between 0 and 1", value=tol)
-    if not isinstance(threads, Integral) or threads < 1:
+    if (type(threads) is not int and not isinstance(threads, Integral)) or threads < 1:
         raise InputError("threads", "must be a whole number from 1 on", value=threads)
 
 

@@ -146,7 +146,7 @@ class ContactSum(ConvexSet):
         self._radius.setflags(write=False)
         if len(self._stretch):
             self._data[3:] = self._stretch.T
-        self._projected = 0
+        self._able, self._projected = len(self._data) == 3 and len(places) >= _MANY, 0
 
     @property
     def count(self) -> int:
@@ -197,12 +197,13 @@ class ContactSum(ConvexSet):
 
     def _by_tree(self, sublinear: bool | None, loads: int) -> bool:
         """Return whether to sum by moments, and count the loads."""
-        able = len(self._data) == 3 and self.count >= _MANY
-        if sublinear and not able:
+        if sublinear is None and not self._able:
+            return False
+        if sublinear and not self._able:
             raise InputError("sublinear", f"needs {_MANY} disks or more", value=sublinear)
         self._projected += loads
         pays = self.count >= _VERY_MANY and self._projected > _SOLVES
-        return able and (pays if sublinear is None else sublinear)
+        return pays if sublinear is None else sublinear
 
     @cached_property
     def _loads(self) -> Array:
