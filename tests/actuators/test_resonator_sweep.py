@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+
+from limitsurf.actuators.resonator_sweep import sensitivity, sweep_resonators
+from limitsurf.actuators.torsional_resonator import TorsionalResonator
+from limitsurf.errors import InputError, LimitSurfError
+
+BASE = TorsionalResonator.from_model("resonator1994")
+LOAD, VOLTAGE, MU = 3.1e-8, 50.0, 0.3
+
+
+def designs(n, seed=4):
+    rng = np.random.default_rng(seed)
+    return {
+        "rod_length": rng.uniform(20e-6, 40e-6, n),
+        "quality": rng.uniform(30.0, 90.0, n),
+        "rod_offset": rng.uniform(-8e-6, 8e-6, n),
+        "contact_damping": rng.uniform(0.0, 6e-7, n),
+        "pole_height": rng.uniform(0.0, 6e-6, n),
+        "beam_pitch": rng.uniform(2e-6, 8e-6, n),
+    }
+
+
+@pytest.mark.parametrize("changes", [{}, {"poles": "-x", "driven": "-x"}, {"drive": "biased"}])
+def test_a_sweep_equals_one_by_one(changes):
+    base = BASE.varied(**changes)
+    varied = designs(60)
+    loads = np.geomspace(1e-9, 4e-7, 60)
+    sweep = sweep_resonators(base, loads, VOLTAGE, MU, **varied)
+    for i, load in enumerate(loads):
+        one = base.varied(**{name: float(values[i]) for name, values in varied.items()})
+        assert sweep.resonance[i] == pytest.approx(one.resonance, rel=1e-12)
+        try:
+            part = one.floating(load, VOLTAGE, MU)
+        except LimitSurfError:
+            assert sweep.status[i] != 0
+            assert np.isnan(sweep.offset[i])
+            continue
+        assert sweep.status[i] == 0
+        assert sweep.edge_amplitude[i] == pytest.approx(part.edge_amplitude, rel=1e-11)
+        assert sweep.height[i] == pytest.approx(part.height, rel=1e-11)
+        assert sweep.offset[i] == pytest.approx(part.offset, rel=1e-9, abs=1e-20)
+        assert sweep.vertical_force[i] == pytest.approx(one.vertical_force(VOLTAGE))
+    assert 10 < (sweep.status == 0).sum() < 60
+
+
+def test_numbers_broadcast():
+    sweep = sweep_resonators(BASE, LOAD, [40.0, 50.0], MU)
+    assert sweep.offset.shape == (2,)
+    assert sweep_resonators(BASE, LOAD, VOLTAGE, MU).offset.shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"rod_length": [30e-6, -1.0]}, "rod_length"),
+        ({"rod_offset": [0.0, 30e-6]}, "rod_offset"),
+        ({"quality": [[60.0]]}, "quality"),
+        ({"quality": [60.0, np.nan]}, "quality"),
+        ({"poles": [1.0]}, "poles"),
+        ({"restitution": [0.5, 1.0]}, "restitution"),
+    ],
+)
+def test_bad_designs_are_named(changes, name):
+    with pytest.raises(InputError, match=name):
+        sweep_resonators(BASE, LOAD, VOLTAGE, MU, **changes)
+
+
+def test_bad_conditions_are_named():
+    for arguments, name in (((0.0, 50.0, MU), "load"), ((LOAD, [50.0, 0.0], MU), "voltage")):
+        with pytest.raises(InputError, match=name):
+            sweep_resonators(BASE, *arguments)
+    with pytest.raises(InputError, match="mu"):
+        sweep_resonators(BASE, LOAD, VOLTAGE, -0.3)
+
+
+def test_sensitivity_names_every_assumed_number_that_counts():
+    table = sensitivity(BASE, LOAD, VOLTAGE, MU)
+    assert set(table) == {
+        "beam_pitch",
+        "rod_length",
+        "pole_height",
+        "pole_section",
+        "quality",
+        "contact_stiffness",
+        "contact_damping",
+        "mu",
+    }
+    assert table["rod_length"]["resonance"] == pytest.approx(-0.5, abs=1e-6)
+    assert table["quality"]["resonance"] == 0.0
+    assert table["quality"]["edge_amplitude"] > 1.0  # the gap closes
+    assert table["contact_damping"]["offset"] == pytest.approx(1.0, abs=0.1)
+    assert table["mu"]["offset"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_sensitivity_is_the_slope_of_coarse_differences():
+    table = sensitivity(BASE, LOAD, VOLTAGE, MU, ("contact_stiffness",))
+    low, high = (
+        BASE.varied(contact_stiffness=10.0 * s).floating(LOAD, VOLTAGE, MU) for s in (0.99, 1.01)
+    )
+    slope = np.log(high.offset / low.offset) / np.log(1.01 / 0.99)
+    assert table["contact_stiffness"]["offset"] == pytest.approx(slope, rel=1e-3)
+
+
+def test_zero_has_no_relative_sensitivity():
+    with pytest.raises(InputError, match="rod_offset"):
+        sensitivity(BASE, LOAD, VOLTAGE, MU, ("rod_offset",))
