@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from limitsurf.kernels.moment_aggregate import aggregate
 from limitsurf.kernels.moment_series import FORCE_TAIL, SPEED_TAIL
 from limitsurf.kernels.moment_tree import tree_sums
 from limitsurf.kernels.moment_tree_build import build_moment_tree
@@ -147,47 +146,17 @@ def test_majorants_are_sums_of_moduli():
     assert np.all(np.diff(SPEED_TAIL[1:]) < 0)
 
 
-@pytest.mark.parametrize("count", [1, 3, 50, 600, 5000])
-def test_aggregated_contacts_lie_inside(rng, count):
-    for name, x, y in clouds(rng, 2000):
-        for m in weights(rng, len(x)):
-            ax, ay, am = aggregate(build_moment_tree(x, y, m, 6, 64), count)
-            assert len(am) <= count
-            assert am.sum() == pytest.approx(m.sum(), rel=1e-12)
-            reach = np.sum(m * np.hypot(x, y))
-            for a, b in ((ax, x), (ay, y)):
-                assert np.sum(am * a) == pytest.approx(np.sum(m * b), abs=1e-12 * reach), name
-            for _, v in twists(rng, x, y):
-                inner, whole = exact_sums(ax, ay, am, v)[0], exact_sums(x, y, m, v)[0]
-                assert inner <= whole + 1e-12 * (np.hypot(*v[:2]) * m.sum() + abs(v[2]) * reach)
-
-
-def test_more_aggregated_contacts_are_closer(rng):
-    x, y = rng.normal(size=(2, 20000))
-    m = rng.uniform(0.5, 1.0, 20000)
-    tree = build_moment_tree(x, y, m)
-    v = np.array([0.3, -0.4, 1.0])
-    gaps = []
-    for count in (8, 64, 512):
-        ax, ay, am = aggregate(tree, count)
-        assert len(am) > count // 2
-        gaps.append(float(1.0 - exact_sums(ax, ay, am, v)[0] / exact_sums(x, y, m, v)[0]))
-    assert gaps[0] > 4 * gaps[1] > 16 * gaps[2] > 0
-
-
 def test_no_contacts_no_mass_and_no_twist(rng):
     none = np.empty(0)
     tree = build_moment_tree(none, none, none)
     sums, _, _, bounds = sums_and_errors(tree, rng.normal(size=3))
     assert not np.any(sums)
     assert bounds == (0.0, 0.0)
-    assert [len(a) for a in aggregate(tree, 5)] == [0, 0, 0]
     x, y = rng.normal(size=(2, 500))
     weightless = build_moment_tree(x, y, np.zeros(500))
     sums, _, _, bounds = sums_and_errors(weightless, rng.normal(size=3))
     assert not np.any(sums)
     assert bounds == (0.0, 0.0)
-    assert len(aggregate(weightless, 5)[0]) == 0
     sums, _, _, bounds = sums_and_errors(build_moment_tree(x, y, np.ones(500)), np.zeros(3))
     assert not np.any(sums)
     assert bounds == (0.0, 0.0)

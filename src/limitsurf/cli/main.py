@@ -10,6 +10,7 @@ import typer
 
 from limitsurf import __version__
 from limitsurf.cli.align import align
+from limitsurf.cli.warm_up import warm_up
 from limitsurf.errors import LimitSurfError
 
 __all__ = ["app", "main"]
@@ -21,6 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(align)
+app.command()(warm_up)
 
 
 def _show_version(wanted: bool) -> None:

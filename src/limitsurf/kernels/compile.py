@@ -7,6 +7,7 @@ except for the sign of zero.
 from __future__ import annotations
 
 import contextlib
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar, cast
@@ -20,6 +21,9 @@ __all__ = ["Bools", "Floats", "Ints", "compiled"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
+
+# kernels that start threads say so in Python, on purpose
+warnings.filterwarnings("ignore", message="Code running in object mode")
 
 F = TypeVar("F", bound=Callable[..., object])
 

@@ -20,12 +20,16 @@ are added in order: the rounding grows with the root of N, and any number of thr
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import objmode
 
 from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.moment_tree import tree_sums
+from limitsurf.kernels.moment_tree_build import MomentTree
+from limitsurf.kernels.nearest_contact import nearest_contact
 from limitsurf.kernels.symmetric3 import Symmetric
 from limitsurf.kernels.vectors import Vector
 
@@ -34,6 +38,7 @@ __all__ = [
     "SUMS",
     "Contacts",
     "Kink",
+    "Tree",
     "contact_columns",
     "contact_velocity",
     "exact_sums",
@@ -50,14 +55,23 @@ SUMS = 12  # h, g (3), H (6), k, contacts left out
 _EPS = float(np.finfo(np.float64).eps)
 
 
+class Tree(NamedTuple):
+    """The moments of contacts that lie in its order, and the tail allowed per unit of friction."""
+
+    moments: MomentTree
+    tol: float
+
+
 class Contacts(NamedTuple):
     """Contacts about their centroid, as rows x, y, m, and for ellipses xx, xy, yy of S.
 
-    `threads` is the number of threads for a pass.
+    `threads` is the number of threads for a pass. With a tree, `exact_sums` takes less than linear
+    time.
     """
 
     data: Floats
     threads: int
+    tree: Tree | None
 
 
 class Kink(NamedTuple):
@@ -165,6 +179,28 @@ def _sum_disks(
 
 
 @compiled
+def _sum_forces(x: Floats, y: Floats, m: Floats, v: Vector, tau2: float, sums: Floats) -> None:
+    """Fill the sums of one block of disks at eps = 0, but the Hessian."""
+    vx, vy, w = v
+    h = gx = gy = gw = near = 0.0
+    for i in range(x.shape[0]):
+        px, py = x[i], y[i]
+        ux, uy = vx - w * py, vy + w * px
+        speed2 = ux * ux + uy * uy
+        slow = speed2 < tau2
+        s2 = speed2 + (1.0 if slow else 0.0)
+        k = (0.0 if slow else m[i]) / math.sqrt(s2)
+        near += 1.0 if slow else 0.0
+        fx, fy = k * ux, k * uy
+        h += k * s2
+        gx += fx
+        gy += fy
+        gw += px * fy - py * fx
+    sums[:] = 0.0
+    sums[0], sums[1], sums[2], sums[3], sums[11] = h, gx, gy, gw, near
+
+
+@compiled
 def _sum_ellipses(
     x: Floats,
     y: Floats,
@@ -221,34 +257,62 @@ def add_contact(
 
 @compiled
 def _sum_block(
-    contacts: Contacts, q: int, v: Vector, eps2: float, tau2: float, sums: Floats
+    contacts: Contacts, q: int, v: Vector, eps2: float, tau2: float, curved: bool, sums: Floats
 ) -> None:
     data = contacts.data
     start, end = q * BLOCK, min((q + 1) * BLOCK, data.shape[1])
     x, y, m = data[0, start:end], data[1, start:end], data[2, start:end]
-    if data.shape[0] == 3:
+    if data.shape[0] == 3 and curved:
         _sum_disks(x, y, m, v, eps2, tau2, sums)
+    elif data.shape[0] == 3:
+        _sum_forces(x, y, m, v, tau2, sums)
     else:
         _sum_ellipses(x, y, m, data[3:, start:end], v, eps2, tau2, sums)
 
 
-@njit(cache=True, nogil=True, parallel=True, error_model="numpy")
-def _sum_blocks_side_by_side(
-    contacts: Contacts, v: Vector, eps2: float, tau2: float, table: Floats
+@compiled
+def _sum_blocks(
+    contacts: Contacts,
+    v: Vector,
+    eps2: float,
+    tau2: float,
+    curved: bool,
+    table: Floats,
+    first: int,
+    last: int,
 ) -> None:
-    for q in prange(table.shape[0] - 1):
-        _sum_block(contacts, q, v, eps2, tau2, table[q])
+    """Fill the rows of blocks first to last."""
+    for q in range(first, last):
+        _sum_block(contacts, q, v, eps2, tau2, curved, table[q])
+
+
+def _sum_side_by_side(
+    data: Floats, at: tuple[float, float, float, float, float, bool], table: Floats, threads: int
+) -> None:
+    """Fill the rows of all blocks, a range for each thread."""
+    blocks = table.shape[0] - 1
+    ends = [k * blocks // threads for k in range(threads + 1)]
+    vx, vy, w, eps2, tau2, curved = at
+    same = Contacts(data, 1, None), (vx, vy, w), eps2, tau2, curved, table
+    with ThreadPoolExecutor(threads) as pool:
+        rest = [pool.submit(_sum_blocks, *same, *ends[k : k + 2]) for k in range(1, threads)]
+        _sum_blocks(*same, 0, ends[1])
+        for future in rest:
+            future.result()
 
 
 @compiled
-def _sum_all(contacts: Contacts, v: Vector, eps2: float, tau2: float, table: Floats) -> None:
+def _sum_all(
+    contacts: Contacts, v: Vector, eps2: float, tau2: float, curved: bool, table: Floats
+) -> None:
     """Fill the table with the sums of all blocks, and its last row with the total."""
-    blocks = table.shape[0] - 1
-    if contacts.threads > 1 and blocks > 8:
-        _sum_blocks_side_by_side(contacts, v, eps2, tau2, table)
+    blocks, threads = table.shape[0] - 1, contacts.threads
+    if threads > 1 and blocks >= 4 * threads:
+        data, at = contacts.data, (v[0], v[1], v[2], eps2, tau2, curved)
+        with objmode():  # numba's own parallel loops break in cached callers
+            _sum_side_by_side(data, at, table, threads)
     else:
-        for q in range(blocks):
-            _sum_block(contacts, q, v, eps2, tau2, table[q])
+        _sum_blocks(contacts, v, eps2, tau2, curved, table, 0, blocks)
     total = table[blocks]
     total[:] = 0.0
     for q in range(blocks):
@@ -259,24 +323,53 @@ def _sum_all(contacts: Contacts, v: Vector, eps2: float, tau2: float, table: Flo
 @compiled
 def smoothed_sums(contacts: Contacts, v: Vector, eps: float, table: Floats) -> None:
     """Fill the last row of the table with the sums at eps > 0; no contact is left out."""
-    _sum_all(contacts, v, eps * eps, 0.0, table)
+    _sum_all(contacts, v, eps * eps, 0.0, True, table)
 
 
 @compiled
-def exact_sums(contacts: Contacts, v: Vector, tau: float, table: Floats) -> Kink:
-    """Fill the last row of the table with the sums at eps = 0, the kink left out; return it."""
-    _sum_all(contacts, v, 0.0, tau * tau, table)
+def exact_sums(
+    contacts: Contacts, v: Vector, tau: float, curved: bool, table: Floats
+) -> tuple[Kink, float]:
+    """Fill the last row of the table with the sums at eps = 0, without the kink.
+
+    Return the kink, and a bound on the error of the gradient beside that of adding up. The Hessian
+    is left out unless the sums are to be `curved`.
+    """
+    return _exact_sums(contacts, contacts.tree, v, tau, curved, table)
+
+
+@compiled
+def _exact_sums(
+    contacts: Contacts, tree: Tree | None, v: Vector, tau: float, curved: bool, table: Floats
+) -> tuple[Kink, float]:
+    if tree is not None:  # decided when compiled
+        return _sums_by_tree(contacts, tree, v, tau, table[table.shape[0] - 1])
+    _sum_all(contacts, v, 0.0, tau * tau, curved, table)
     total = table[table.shape[0] - 1]
-    if total[11] == 0.0:
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0))
-    kink = _slowest(contacts, v, table)
-    if kink < 0:  # without friction
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0))
+    kink = _slowest(contacts, v, table) if total[11] > 0.0 else -1
+    if kink < 0:  # none, or without friction
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0
     mass = 0.0
     for q in range(table.shape[0] - 1):
         if table[q, 11] > 0.0:
             mass += _add_slow(contacts, q, v, tau, kink, total)
-    return kink_of(contacts, kink, mass)
+    return kink_of(contacts, kink, mass), 0.0
+
+
+@compiled
+def _sums_by_tree(
+    contacts: Contacts, tree: Tree, v: Vector, tau: float, total: Floats
+) -> tuple[Kink, float]:
+    """Fill the total by moments; the nearest contact is the kink if it is slower than tau."""
+    kink = -1
+    if tau > 0.0:
+        kink, distance = nearest_contact(tree.moments, -v[1] / v[2], v[0] / v[2])
+        if distance * abs(v[2]) >= tau or not contacts.data[2, kink] > 0.0:
+            kink = -1
+    error, _ = tree_sums(tree.moments, np.array(v), kink, tree.tol, total[:11])
+    if kink < 0:
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), error
+    return kink_of(contacts, kink, contacts.data[2, kink]), error
 
 
 @compiled

@@ -37,6 +37,7 @@ __all__ = ["pin", "slide"]
 
 _EPS = float(np.finfo(np.float64).eps)
 _PINS = 8
+_LAST = 1e-5  # residual, relative to the size, which the next step should square
 
 Next = tuple[int, Vector, float]
 
@@ -98,7 +99,7 @@ def _kink_force(
 
 
 @compiled
-def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int) -> Look:
+def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int, curved: bool) -> Look:
     r"""Pass at d, :math:`d^T Q d = 1`, and keep the certificate of the twist :math:`\psi(d)\, d`.
 
     `u` is the kink's velocity, zero if it is rounding; `t` is :math:`\psi(d)`; `left` is c less the
@@ -107,7 +108,8 @@ def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int) -> Lo
     """
     setting = problem.setting
     c = setting.c
-    kink = exact_sums(problem.contacts, d, abs(d[2]) * setting.spacing, problem.table)
+    tau = abs(d[2]) * setting.spacing
+    kink, slack = exact_sums(problem.contacts, d, tau, curved, problem.table)
     best[PASSES] += 1
     one, two = kink_columns(kink)
     u = dot(one, d), dot(two, d)
@@ -123,6 +125,9 @@ def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int) -> Lo
         bound, rest, force = _kink_force(setting, kink, u, left, v, f, kink.contact == before)
     else:
         bound = residual(setting, left, v)
+    if slack > 0.0:  # |C e| for the error e of the sums, in the residual and in the point
+        C = setting.C
+        bound += 2.0 * slack * math.sqrt(dot(C[0], C[0]) + dot(C[1], C[1]) + dot(C[2], C[2]))
     witness = Witness(d, 0.0, kink.contact, kink.mass * force[0], kink.mass * force[1])
     keep(best, bound, along(c, -1.0, rest), v, witness)
     noise = 4.0 * _EPS * (h + abs(dot(c, d)))
@@ -183,7 +188,7 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
     """
     setting = problem.setting
     d = _on_sphere(setting, v)
-    look = _look(problem, best, d, (0.0, 0.0), -1)
+    look = _look(problem, best, d, (0.0, 0.0), -1, True)
     stalled, least = 0, np.inf
     for _ in range(40):
         if look.bound <= setting.target:
@@ -200,12 +205,16 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         share = min(1.0, 1.0 / math.sqrt(max(form(setting.Q, step), 1e-300)))
         kink, lowest = look.kink, look.t - look.noise
+        curved = off > _LAST * setting.scale  # else this step should do
         for _ in range(6):
             trial = along(d, share, step)
             if still and share == 1.0 and kink.stretch == (1.0, 0.0, 1.0):
                 trial = snapped(kink, trial)
             trial = _on_sphere(setting, trial)
-            look = _look(problem, best, trial, f, kink.contact)
+            look = _look(problem, best, trial, f, kink.contact, curved)
+            if not curved and look.bound > setting.target:
+                curved = True
+                look = _look(problem, best, trial, f, kink.contact, curved)
             if look.t >= lowest - 1e-4 * share * expected:
                 break
             share *= 0.35
@@ -235,6 +244,6 @@ def pin(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         slower = nearest
         about = _on_sphere(setting, snapped(kink_of(contacts, found, 0.0), d))
-        if _look(problem, best, about, (0.0, 0.0), -1).bound <= setting.target:
+        if _look(problem, best, about, (0.0, 0.0), -1, False).bound <= setting.target:
             return CERTIFIED, about, 0.0
     return GAVE_UP, d, 0.0

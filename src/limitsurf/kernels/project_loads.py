@@ -40,23 +40,31 @@ __all__ = [
     "COLUMNS",
     "COUNTS",
     "DISTANCES",
+    "FAILED",
+    "HELD_BY_FEW",
     "NORMALS",
     "POINTS",
     "STATUSES",
     "TWISTS",
     "WITNESSES",
+    "Cloud",
+    "about_centroid",
+    "cloud_of",
     "contact_forces",
     "contact_numbers",
     "project_loads",
     "project_ragged",
+    "solve_few",
+    "unit_force",
+    "write_answer",
 ]
 
 # columns of a row of answers; a witness is v, eps, kink, fx, fy
 POINTS, NORMALS, TWISTS, WITNESSES = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 16)
 DISTANCES, BOUNDS, COUNTS, STATUSES, COLUMNS = 16, 17, 18, 19, 20
-_OUTSIDE, _INSIDE, _FAILED, _LOOSE = 0, 1, 2, 3
+_OUTSIDE, _INSIDE, FAILED, _LOOSE = 0, 1, 2, 3
 _WRONG = 1e-6  # a bound above this, relative to the size, is no answer
-_HELD_BY_FEW = -2
+HELD_BY_FEW = -2
 _ZERO = (0.0, 0.0, 0.0)
 
 
@@ -79,26 +87,30 @@ class Cloud(NamedTuple):
 def contact_numbers(data: Floats, few: Floats) -> Floats:
     """Return the second moments of contacts and few, and room for `centroid` and `center`."""
     numbers = np.zeros(17)
-    moments, others = second_moments(Contacts(data, 1)), second_moments(Contacts(few, 1))
+    moments, others = (
+        second_moments(Contacts(data, 1, None)),
+        second_moments(Contacts(few, 1, None)),
+    )
     for k in range(6):
         numbers[k], numbers[6 + k] = moments[k], others[k]
     return numbers
 
 
 @compiled
-def _cloud(data: Floats, few: Floats, n: Floats, threads: int) -> Cloud:
+def cloud_of(data: Floats, few: Floats, n: Floats, threads: int) -> Cloud:
+    """Return the cloud of arrays as `project_loads` takes them."""
     return Cloud(
-        Contacts(data, threads),
+        Contacts(data, threads, None),
         (n[0], n[1], n[2], n[3], n[4], n[5]),
         (n[12], n[13]),
         (n[14], n[15], n[16]),
-        Contacts(few, 1),
+        Contacts(few, 1, None),
         (n[6], n[7], n[8], n[9], n[10], n[11]),
     )
 
 
 @compiled
-def _here(cloud: Cloud, p: Vector, C: Rows) -> tuple[Vector, Rows]:
+def about_centroid(cloud: Cloud, p: Vector, C: Rows) -> tuple[Vector, Rows]:
     """Return the load without the center, and the factor of the metric, about the centroid."""
     cx, cy = cloud.centroid
     free = along(p, -1.0, cloud.center)
@@ -112,12 +124,26 @@ def _here(cloud: Cloud, p: Vector, C: Rows) -> tuple[Vector, Rows]:
 
 
 @compiled
-def _unit(C: Rows) -> float:
+def unit_force(C: Rows) -> float:
     """Return the norm of a unit force, averaged over directions."""
     square = 0.0
     for i in range(3):
         square += C[i][0] ** 2 + C[i][1] ** 2
     return math.sqrt(0.5 * square)
+
+
+@compiled
+def solve_few(
+    cloud: Cloud, table: Floats, here: Rows, c: Vector, unit: float, tol: float, best: Floats
+) -> tuple[bool, Vector, float]:
+    """Solve for the few; return whether they hold the load, else where all may start."""
+    n = cloud.few.data.shape[1]
+    setting = new_setting(n, cloud.few_moments, here, c, unit, tol)
+    problem = Problem(cloud.few, table, setting)
+    held = solve_contact_sum(problem, best, _ZERO, COLD, np.empty((0, 2)))
+    held = held and best[TWIST] == best[TWIST + 1] == best[TWIST + 2] == 0.0
+    v = best[WITNESS], best[WITNESS + 1], best[WITNESS + 2]
+    return held, v, max(best[EPS], 0.0)
 
 
 @compiled
@@ -133,28 +159,23 @@ def _solve_one(
     answer: Floats,
 ) -> None:
     """Fill the row of one answer; v, eps is where to start, about the centroid."""
-    c, here = _here(cloud, p, C)
-    unit, none = _unit(C), np.empty((0, 2))
+    c, here = about_centroid(cloud, p, C)
+    unit, none = unit_force(C), np.empty((0, 2))
     best, fewer = bests
     setting = new_setting(cloud.contacts.data.shape[1], cloud.moments, here, c, unit, tol)
-    problem = Problem(cloud.contacts, tables[0], setting)
-    held, n = False, cloud.few.data.shape[1]
-    if eps < 0.0 and n > 0:
-        rough = new_setting(n, cloud.few_moments, here, c, unit, tol)
-        held = solve_contact_sum(Problem(cloud.few, tables[1], rough), fewer, v, eps, none)
-        held = held and fewer[TWIST] == fewer[TWIST + 1] == fewer[TWIST + 2] == 0.0
-        v = fewer[WITNESS], fewer[WITNESS + 1], fewer[WITNESS + 2]
-        eps = max(fewer[EPS], 0.0)
+    problem, held = Problem(cloud.contacts, tables[0], setting), False
+    if eps < 0.0 and cloud.few.data.shape[1] > 0:
+        held, v, eps = solve_few(cloud, tables[1], here, c, unit, tol, fewer)
     if held:
         best[:] = fewer
-        best[PASSES], best[KINK] = 0.0, _HELD_BY_FEW
+        best[PASSES], best[KINK] = 0.0, HELD_BY_FEW
     else:
         solve_contact_sum(problem, best, v, eps, none)
-    _write(cloud, setting, tol, p, C, best, answer)
+    write_answer(cloud, setting, tol, p, C, best, answer)
 
 
 @compiled
-def _write(
+def write_answer(
     cloud: Cloud, setting: Setting, tol: float, p: Vector, C: Rows, best: Floats, answer: Floats
 ) -> None:
     """Carry the best answer back to the reference point."""
@@ -182,7 +203,7 @@ def _write(
     answer[17], answer[18] = total, best[PASSES]
     answer[19] = _INSIDE if inside else _OUTSIDE
     if not total <= _WRONG * setting.scale:
-        answer[19] = _FAILED
+        answer[19] = FAILED
     elif total > tol * setting.scale:
         answer[19] = _LOOSE
 
@@ -218,7 +239,7 @@ def project_loads(
     threads : int
         Threads for one pass.
     """
-    cloud = _cloud(data, few, numbers, threads)
+    cloud = cloud_of(data, few, numbers, threads)
     rows = row(C, 0), row(C, 1), row(C, 2)
     answers = np.empty((points.shape[0], COLUMNS))
     tables, bests = (new_table(data.shape[1]), new_table(few.shape[1])), (new_best(), new_best())
@@ -228,7 +249,7 @@ def project_loads(
             v, eps = row(starts, k), starts[k, 3]
         p = row(points, k)
         _solve_one(cloud, tables, p, rows, tol, v, eps, bests, answers[k])
-        failed += answers[k, STATUSES] == _FAILED
+        failed += answers[k, STATUSES] == FAILED
     return answers, failed
 
 
@@ -247,15 +268,15 @@ def contact_forces(
     They follow from the witness, unless the few stood for all or `primal_dual` found the answer:
     then the problem is solved once more.
     """
-    cloud = _cloud(data, few, numbers, 1)
+    cloud = cloud_of(data, few, numbers, 1)
     contacts, best = cloud.contacts, new_best()
     forces = np.zeros((data.shape[1], 2))
     best[WITNESS:PASSES] = witness
-    if witness[4] == _HELD_BY_FEW or witness[3] < 0.0:
+    if witness[4] == HELD_BY_FEW or witness[3] < 0.0:
         rows = row(C, 0), row(C, 1), row(C, 2)
-        c, here = _here(cloud, (point[0], point[1], point[2]), rows)
+        c, here = about_centroid(cloud, (point[0], point[1], point[2]), rows)
         table = new_table(data.shape[1])
-        setting = new_setting(data.shape[1], cloud.moments, here, c, _unit(rows), tol)
+        setting = new_setting(data.shape[1], cloud.moments, here, c, unit_force(rows), tol)
         problem = Problem(contacts, table, setting)
         v = witness[0], witness[1], witness[2]
         solve_contact_sum(problem, best, v, witness[3], forces)
@@ -319,7 +340,7 @@ def project_ragged(
     most = 0
     for k in range(first, last):
         most = max(most, ptr[k + 1] - ptr[k])
-    buffer, few = np.empty(3 * most), Contacts(np.empty((3, 0)), 1)
+    buffer, few = np.empty(3 * most), Contacts(np.empty((3, 0)), 1, None)
     rows = row(C, 0), row(C, 1), row(C, 2)
     table, none, bests = new_table(most), new_table(0), (new_best(), new_best())
     for k in range(first, last):
@@ -327,7 +348,7 @@ def project_ragged(
         own = offset[s] if offset.shape[0] > 0 else offset
         data = buffer[: 3 * n].reshape(3, n)
         cx, cy, center = _shifted(x[s], y[s], m[s], own, data)
-        contacts = Contacts(data, 1)
+        contacts = Contacts(data, 1, None)
         moments = second_moments(contacts)
         cloud = Cloud(contacts, moments, (cx, cy), center, few, moments)
         blocks = table[: -(-n // BLOCK) + 1]

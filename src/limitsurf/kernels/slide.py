@@ -227,7 +227,7 @@ def _solve(
     scaled = work.load + momentum
     scaled[2] /= rho
     best = work.best
-    contacts = Contacts(work.data[: 3 * count].reshape(3, count), 1)
+    contacts = Contacts(work.data[: 3 * count].reshape(3, count), 1, None)
     table = work.table[: -(-count // BLOCK) + 1]
     c = scaled[0], scaled[1], scaled[2]
     setting = new_setting(count, second_moments(contacts), _IDENTITY, c, 1.0, tol)

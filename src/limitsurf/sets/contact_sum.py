@@ -12,6 +12,8 @@ from limitsurf.conic.form import Cone, ConicForm
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.kernels.aggregate import aggregate
 from limitsurf.kernels.contact_sum import COLD
+from limitsurf.kernels.moment_tree_build import MomentTree, build_moment_tree
+from limitsurf.kernels.project_by_tree import project_by_tree
 from limitsurf.kernels.project_loads import (
     BOUNDS,
     COUNTS,
@@ -36,6 +38,8 @@ Array = NDArray[np.float64]
 
 _MANY = 4096  # contacts from which a few stand for them in a first solve
 _SIDE = 24  # cells a side that they are gathered in
+_VERY_MANY, _SOLVES = 100_000, 20  # where a quadtree pays, and after how many loads
+_ORDER = 16  # of its moments
 _NOTHING_KNOWN = np.empty((0, 4))
 
 
@@ -133,6 +137,7 @@ class ContactSum(ConvexSet):
         self._data[2] = self._radius
         if len(self._stretch):
             self._data[3:] = self._stretch.T
+        self._projected = 0
 
     @property
     def count(self) -> int:
@@ -168,6 +173,21 @@ class ContactSum(ConvexSet):
         numbers = contact_numbers(self._data, few)
         numbers[12:14], numbers[14:] = self._centroid, self._center
         return self._data, few, numbers
+
+    @cached_property
+    def _tree(self) -> tuple[Array, MomentTree]:
+        """Contacts in the order of their quadtree, and its moments."""
+        moments = build_moment_tree(self._data[0], self._data[1], self._data[2], _ORDER)
+        return np.stack([moments.x, moments.y, moments.m]), moments
+
+    def _by_tree(self, sublinear: bool | None, loads: int) -> bool:
+        """Return whether to sum by moments, and count the loads."""
+        able = len(self._data) == 3 and self.count >= _MANY
+        if sublinear and not able:
+            raise InputError("sublinear", f"needs {_MANY} disks or more", value=sublinear)
+        self._projected += loads
+        pays = self.count >= _VERY_MANY and self._projected > _SOLVES
+        return able and (pays if sublinear is None else sublinear)
 
     @cached_property
     def _loads(self) -> Array:
@@ -257,6 +277,7 @@ class ContactSum(ConvexSet):
         start: ArrayLike | Projection | None = None,
         tol: float | None = None,
         threads: int = 1,
+        sublinear: bool | None = None,
     ) -> ContactProjection:
         """Return the closest points, twists and certified errors.
 
@@ -277,6 +298,10 @@ class ContactSum(ConvexSet):
             Where rounding or the method leave more, the status is `Status.LOOSE`.
         threads : int
             Threads to use; more than one pays from about 1e5 contacts on.
+        sublinear : bool, optional
+            Sum by moments of a quadtree, in less than linear time, with their error in the bound.
+            Building it takes as long as some 20 solves: None does that for 1e5 disks or more
+            when that many loads have been projected.
         """
         points, shape = as_rows("p", p, 3)
         W = read_metric(metric, 3)
@@ -284,7 +309,17 @@ class ContactSum(ConvexSet):
         if not 0.0 < tol < 1.0:
             raise InputError("tol", "must lie between 0 and 1", value=tol)
         starts = _NOTHING_KNOWN if start is None else self._starts(start, len(points))
-        answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, threads)
+        if self._by_tree(sublinear, len(points)):
+            data, moments = self._tree
+            _, few, numbers = self._kernel_data
+            answers, failed = project_by_tree(
+                data, few, numbers, moments, points, W.C, starts, tol, threads
+            )
+            kink = answers[:, WITNESSES][:, 4]
+            known = kink >= 0
+            kink[known] = moments.permutation[kink[known].astype(np.int64)]
+        else:
+            answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, threads)
         projection = ContactProjection(self, points, W, answers, shape)
         if failed:
             as_points("p", p, 3)  # raises where entries are not finite

@@ -1,0 +1,75 @@
+"""Compile all kernels once, so that no later call has to wait for the compiler."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+__all__ = ["GROUPS", "warm_up"]
+
+
+def _sets() -> None:
+    """Use every kind of set once."""
+    import limitsurf as ls
+
+    cloud = np.random.default_rng(0).normal(size=(40, 3))
+    p = [9.0, 8.0, 7.0]
+    hull = ls.VPolytope(cloud)
+    box = ls.HPolytope(np.vstack([np.eye(3), -np.eye(3)]), np.ones(6))
+    quartic = ls.PolynomialSet([[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 0, 0]], [1.0, 1.0, 1.0, 1.0])
+    for s in (ls.Ellipsoid([0, 0, 0], np.eye(3)), hull, box, hull.to_h(), quartic):
+        s.project(p)
+        s.support_point(p)
+    ls.MinkowskiSum(hull, ls.VPolytope(cloud + cloud[::-1])).project(p)
+    ls.Zonotope([0, 0, 0], cloud[:5]).project(p)
+
+
+def _contacts() -> None:
+    """Use sums of few, many and ragged contacts, a lattice, a plan and a simulation once."""
+    import limitsurf as ls
+
+    rng = np.random.default_rng(0)
+    position, load = rng.normal(size=(5000, 2)), [3.0, 2.0, 1.0]
+    ls.ContactSum(position[:20], np.ones(20)).project(load).contact_forces()
+    ls.ContactSum(position, np.ones(5000)).project(load, sublinear=True)
+    ls.project_many((position[:20], np.ones(20), [10, 10]), [load, load])
+    part = ls.Part.from_file("paper_t")
+    drive = ls.squeeze_activation(ls.load_array("resonator32"), 0.0)
+    ls.simulate(part, drive, duration=1e-3)
+    ls.LatticeContacts(part, 1e-4, (0.0, 0.0)).move((0.0, 0.0, 0.1))
+    ls.plan_alignment(part)
+
+
+#: What is compiled side by side: groups that share few kernels.
+GROUPS: dict[str, Callable[[], None]] = {"convex sets": _sets, "contacts and motion": _contacts}
+
+
+def _timed(name: str) -> tuple[str, float]:
+    start = time.perf_counter()
+    GROUPS[name]()
+    return name, time.perf_counter() - start
+
+
+def warm_up(
+    processes: Annotated[int, typer.Option(min=1, help="Processes to compile in.")] = 2,
+) -> None:
+    """Compile all kernels once; about a minute after installation, a second later on."""
+    import limitsurf.kernels.compile  # noqa: F401 - drops stale caches before processes start
+
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    with (
+        Progress(*columns) as progress,
+        ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool,
+    ):
+        task = progress.add_task("compiling kernels", total=len(GROUPS))
+        for future in as_completed([pool.submit(_timed, name) for name in GROUPS]):
+            name, seconds = future.result()
+            progress.console.print(f"{name}: {seconds:.1f} s")
+            progress.advance(task)
