@@ -71,14 +71,16 @@ def height_for(resonator, load, tilt, swing, omega, mu):
     return brentq(excess, top - 1.9 * min(resonator.levers) * swing, top, xtol=1e-20)
 
 
-def twin_floating(resonator, load, voltage, mu):
+def twin_floating(resonator, load, voltage, mu, lag=0.5 * np.pi):
     """Return (tilt amplitude, mean tilt, omega, height, offset over mu load)."""
     phase = 2 * np.pi * np.arange(256) / 256
     k, j, c = resonator.stiffness, resonator.inertia, resonator.damping
     natural = np.sqrt(k / j)
-    left, right = drives(resonator, voltage, phase)
+    left, right = drives(resonator, voltage, phase + lag - 0.5 * np.pi)
     linear = rim_torque(resonator, np.zeros(256), left, right)
-    scale = 2 * (linear * np.cos(phase)).mean() / (c * natural)
+    cos, sin = 2 * (linear * np.cos(phase)).mean(), 2 * (linear * np.sin(phase)).mean()
+    first = max(np.roots([j, c * sin / cos, -k]))  # omega of the linear oscillator
+    scale = cos / (c * first)
 
     def balance(x, carried=0.0):
         swing, tilt, omega = x[0] * scale, x[1] * scale, x[2] * natural
@@ -94,7 +96,7 @@ def twin_floating(resonator, load, voltage, mu):
             ((k - j * omega**2) * swing - sin + part[3]) / (k * scale),
         ]
 
-    x = root(balance, [1.0, 0.0, 1.0], tol=1e-12).x
+    x = root(balance, [1.0, 0.0, first / natural], tol=1e-12).x
     for share in np.linspace(0.0, 1.0, max(2, int(np.ceil(load / 2e-8)) + 1))[1:]:
         x = root(balance, x, args=(share * load,), tol=1e-12).x  # load by load: Newton stays near
     state = x[1] * scale, x[0] * scale, x[2] * natural
@@ -107,7 +109,7 @@ def twin_floating(resonator, load, voltage, mu):
 def _march(theta, rate, dt, steps, per, p):
     """March J th'' + c th' + k th = tau - sum N (x + mu z sign th') by classical Runge-Kutta."""
     (k, j, c, strength, length, gap, omega, height, K, C, mu) = p[:11]
-    levers, tops, on, biased = p[11:13], p[13:15], p[15:17], p[17]
+    levers, tops, on, biased, ahead = p[11:13], p[13:15], p[15:17], p[17], p[18]
     low, high, normal, push, count = np.inf, -np.inf, 0.0, 0.0, 0
     state = np.array([theta, rate])
     slopes = np.empty((4, 2))
@@ -121,7 +123,7 @@ def _march(theta, rate, dt, steps, per, p):
             for side in range(2):
                 sign = 1.0 if side == 0 else -1.0
                 R = levers[side]
-                x = omega * t + (np.pi if side == 0 else 0.0)
+                x = omega * t + ahead + (np.pi if side == 0 else 0.0)
                 wave = 0.5 * (1.0 + np.cos(x))
                 square = wave**2 if biased > 0.0 else wave
                 u = sign * R * th / gap
@@ -172,6 +174,7 @@ def march(part, cycles=400, per=400):
             *resonator.tip_heights,
             *sides,
             float(resonator.drive == "biased"),
+            part.lag - 0.5 * np.pi,
         ]
     )
     dt = 2 * np.pi / omega / per

@@ -44,6 +44,16 @@ def test_a_sweep_equals_one_by_one(changes):
     assert 10 < (sweep.status == 0).sum() < 60
 
 
+def test_lags_may_vary():
+    lags = np.array([0.5, 0.8, 1.2])
+    sweep = sweep_resonators(BASE, 3.4e-7, 75.0, MU, lag=lags)
+    parts = [BASE.floating(3.4e-7, 75.0, MU, lag) for lag in lags[:2]]
+    assert sweep.offset[:2] == pytest.approx([part.offset for part in parts])
+    assert sweep.status[2] == 1  # the free edge hits
+    with pytest.raises(InputError, match="lag"):
+        sweep_resonators(BASE, 3.4e-7, 75.0, MU, lag=0.0)
+
+
 def test_numbers_broadcast():
     sweep = sweep_resonators(BASE, LOAD, [40.0, 50.0], MU)
     assert sweep.offset.shape == (2,)

@@ -63,10 +63,10 @@ class FloatingPart:
     ----------
     resonator : TorsionalResonator
         The resonator.
-    load, voltage, mu : float
-        Weight carried [N], peak voltage [V], friction coefficient.
+    load, voltage, mu, lag : float
+        Weight carried [N], peak voltage [V], friction coefficient, phase behind the torque [rad].
     frequency, tilt_amplitude, mean_tilt, edge_amplitude : float
-        The loaded oscillation at its resonance [Hz, rad, rad, m].
+        The loaded oscillation [Hz, rad, rad, m].
     height : float
         Of the part's underside above the rods' axis [m].
     depths : (2,) float
@@ -83,6 +83,7 @@ class FloatingPart:
     load: float
     voltage: float
     mu: float
+    lag: float
     frequency: float
     tilt_amplitude: float
     mean_tilt: float
@@ -129,12 +130,18 @@ def _at_frequency(resonator: TorsionalResonator, omega: float) -> ContactLaw:
     return ContactLaw(law.stiffness, law.loss * omega, law.restitution)
 
 
-def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: float) -> FloatingPart:
+def floating(
+    resonator: TorsionalResonator,
+    load: float,
+    voltage: float,
+    mu: float,
+    lag: float = 0.5 * np.pi,
+) -> FloatingPart:
     r"""Return how a part floats on a running resonator, from mean normal force = load.
 
     The part stands still within a cycle (it is some 500 times heavier than the grid) and is level.
-    Its normal force brakes the grid by the loss of the contact and by friction; the drive follows
-    the loaded resonance.
+    Its normal force brakes the grid by the loss of the contact and by friction. The drive follows
+    the motion at a fixed phase, so that the frequency follows the load.
 
     Parameters
     ----------
@@ -146,6 +153,9 @@ def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: flo
         Peak voltage [V].
     mu : float
         Friction coefficient of tip and part.
+    lag : float
+        Phase of the tilt behind the torque [rad]; a quarter cycle is resonance, less swings less:
+        see `resonator_motion.lag_for`.
 
     Raises
     ------
@@ -165,7 +175,7 @@ def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: flo
     >>> bool(part.offset < 0.0)
     True
     """
-    _check_arguments(resonator, load, voltage, mu)
+    _check_arguments(resonator, load, voltage, mu, lag)
     motion, part = loaded_motion(
         grid_record(resonator),
         drive_record(resonator, voltage),
@@ -173,6 +183,7 @@ def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: flo
         contact_law(resonator),
         float(load),
         float(mu),
+        float(lag),
     )
     if motion.status in _REASONS:
         raise TipStalled(load, voltage, _REASONS[motion.status])
@@ -188,6 +199,7 @@ def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: flo
         load=float(load),
         voltage=float(voltage),
         mu=float(mu),
+        lag=float(lag),
         frequency=motion.omega / (2 * np.pi),
         tilt_amplitude=motion.amplitude,
         mean_tilt=motion.mean,
@@ -201,11 +213,15 @@ def floating(resonator: TorsionalResonator, load: float, voltage: float, mu: flo
     )
 
 
-def _check_arguments(resonator: TorsionalResonator, load: float, voltage: float, mu: float) -> None:
+def _check_arguments(
+    resonator: TorsionalResonator, load: float, voltage: float, mu: float, lag: float
+) -> None:
     if not (np.isfinite(load) and load > 0.0):
         raise InputError("load", "must be positive", value=load)
     if not (np.isfinite(mu) and mu >= 0.0):
         raise InputError("mu", "must not be negative", value=mu)
+    if not 0.0 < lag < np.pi:
+        raise InputError("lag", "must lie between 0 and pi", value=lag)
     drive_record(resonator, voltage)
     force = resonator.vertical_force(voltage)
     if load > force:
@@ -218,6 +234,7 @@ def contact(
     voltage: float,
     mu: float,
     *,
+    lag: float = 0.5 * np.pi,
     facing: float = 0.0,
     samples: int = 256,
 ) -> Any:
@@ -227,8 +244,8 @@ def contact(
     ----------
     resonator : TorsionalResonator
         The resonator.
-    load, voltage, mu : float
-        Weight that it carries [N], peak voltage [V], friction coefficient.
+    load, voltage, mu, lag : float
+        As in `floating`.
     facing : float
         Angle of the resonator's x-axis in the array's frame [rad].
     samples : int
@@ -240,7 +257,7 @@ def contact(
         Both tips touch and have different heights: no single waveform describes them.
     """
     home = import_module("limitsurf.contacts.oscillating_contact")  # needs its kernels only here
-    velocity, force = single_tip(floating(resonator, load, voltage, mu), samples)
+    velocity, force = single_tip(floating(resonator, load, voltage, mu, lag), samples)
     direction = np.array([np.cos(facing), np.sin(facing)])
     return home.OscillatingContact(mu, direction, velocity, force)
 

@@ -17,7 +17,7 @@ from limitsurf.kernels.resonator_balance import free_motion as solve_free
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
 
-__all__ = ["FrequencyResponse", "ResonatorMotion", "free_motion", "response"]
+__all__ = ["FrequencyResponse", "ResonatorMotion", "free_motion", "lag_for", "response"]
 
 Array = NDArray[np.float64]
 
@@ -137,6 +137,43 @@ def _lag_at(resonator: TorsionalResonator, voltage: float, omega: float) -> floa
         check_status(resonator, voltage, worst)
         raise SolveFailed("no steady oscillation at this frequency was found")
     return max((_lag(c) for c in roots), key=lambda x: _solve(resonator, voltage, x).amplitude)
+
+
+def lag_for(resonator: TorsionalResonator, voltage: float, edge_amplitude: float) -> float:
+    """Return the lag [rad], at most a quarter cycle, at which the free edge swings by no more.
+
+    A drive that leads the motion by less than a quarter cycle does less work: so a resonator can
+    run at a voltage that would throw it against its electrode at resonance.
+
+    Parameters
+    ----------
+    resonator : TorsionalResonator
+        The resonator.
+    voltage : float
+        Peak voltage [V].
+    edge_amplitude : float
+        Of the farther edge [m], below the clearance.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.torsional_resonator import TorsionalResonator
+    >>> one = TorsionalResonator.from_model("resonator1994")
+    >>> lag = lag_for(one, 75.0, 1.5e-6)
+    >>> round(1e6 * max(one.levers) * one.floating(1e-12, 75.0, 0.3, lag).tilt_amplitude, 2)
+    1.5
+    """
+    if not 0.0 < edge_amplitude < resonator.clearance:
+        raise InputError("edge_amplitude", "must lie below the clearance", value=edge_amplitude)
+
+    def excess(lag: float) -> float:
+        motion = _solve(resonator, voltage, lag)
+        if motion.status == CLEARANCE:
+            return resonator.clearance
+        return float(max(resonator.levers) * motion.amplitude - edge_amplitude)
+
+    if excess(0.5 * np.pi) <= 0.0:
+        return 0.5 * np.pi
+    return float(brentq(excess, 1e-3, 0.5 * np.pi, xtol=1e-12))
 
 
 def _lag(cotangent: float) -> float:

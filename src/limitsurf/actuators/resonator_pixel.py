@@ -69,6 +69,9 @@ class ResonatorPixel:
 
         Notes
         -----
+        Where the free edge would swing by more than half of the clearance at resonance, the drive
+        leads the motion by less, see `resonator_motion.lag_for`.
+
         The tip of a resonator is never at rest, so nothing is left of its friction disk.
 
         Examples
@@ -77,7 +80,8 @@ class ResonatorPixel:
         >>> (pixel.offset_fraction, round(pixel.running(3.1e-8, 50.0).offset_fraction, 2))
         (0.1, 0.16)
         """
-        part = self.resonator.floating(load, voltage, self.friction)
+        lag = self.resonator.lag_for(voltage, 0.5 * self.resonator.clearance)
+        part = self.resonator.floating(load, voltage, self.friction, lag)
         return replace(self, offset_fraction=abs(part.offset_fraction), residual_fraction=0.0)
 
     def __repr__(self) -> str:

@@ -22,6 +22,8 @@ __all__ = ["ResonatorSweep", "sensitivity", "sweep_resonators"]
 
 Array = NDArray[np.float64]
 
+_CONDITIONS = ("load", "voltage", "mu", "lag")
+
 _STEP = 1e-4  # relative, of central differences: error 1e-8, rounding 1e-9 of the balance's 1e-13
 
 
@@ -59,6 +61,8 @@ def sweep_resonators(
     load: ArrayLike,
     voltage: ArrayLike,
     mu: ArrayLike,
+    *,
+    lag: ArrayLike = 0.5 * np.pi,
     **parameters: ArrayLike,
 ) -> ResonatorSweep:
     """Return the loaded oscillation of many designs.
@@ -67,7 +71,7 @@ def sweep_resonators(
     ----------
     resonator : TorsionalResonator
         Gives what does not vary.
-    load, voltage, mu : (n,) float or float
+    load, voltage, mu, lag : (n,) float or float
         As in `TorsionalResonator.floating`.
     **parameters : (n,) float or float
         Numeric fields of the resonator that vary, by name.
@@ -86,7 +90,8 @@ def sweep_resonators(
     >>> bool(np.all(np.diff(sweep.resonance) < 0.0))
     True
     """
-    p = _columns(resonator, load, voltage, mu, parameters)
+    conditions = {"load": load, "voltage": voltage, "mu": mu, "lag": lag}
+    p = _columns(resonator, {**parameters, **conditions})
     designs, resonance = _designs(resonator, p)
     out = np.empty((len(designs), 9))
     sweep_designs(designs, out)
@@ -108,19 +113,13 @@ def sweep_resonators(
     )
 
 
-def _columns(
-    resonator: TorsionalResonator,
-    load: ArrayLike,
-    voltage: ArrayLike,
-    mu: ArrayLike,
-    parameters: Mapping[str, ArrayLike],
-) -> dict[str, Array]:
+def _columns(resonator: TorsionalResonator, varied: Mapping[str, ArrayLike]) -> dict[str, Array]:
     """Return every number of the resonator and the conditions, each of the same length."""
     base = {k: v for k, v in vars(resonator).items() if isinstance(v, int | float)}
-    unknown = sorted(set(parameters) - set(base))
+    unknown = sorted(set(varied) - set(base) - set(_CONDITIONS))
     if unknown:
         raise InputError(unknown[0], "is no number of TorsionalResonator")
-    merged = {**base, **parameters, "load": load, "voltage": voltage, "mu": mu}
+    merged = {**base, **varied}
     for name, value in merged.items():
         if np.ndim(value) > 1:
             raise InputError(name, "must be a number or one-dimensional", value=np.shape(value))
@@ -141,7 +140,9 @@ def _check_columns(resonator: TorsionalResonator, columns: Mapping[str, Array]) 
             raise InputError(name, "must be positive", value=float(columns[name].min()))
     if columns["mu"].min() < 0.0:
         raise InputError("mu", "must not be negative", value=float(columns["mu"].min()))
-    numbers = [n for n in columns if n not in ("load", "voltage", "mu")]
+    if not (columns["lag"].min() > 0.0 and columns["lag"].max() < np.pi):
+        raise InputError("lag", "must lie between 0 and pi")
+    numbers = [n for n in columns if n not in _CONDITIONS]
     spread = [n for n in numbers if columns[n].min() != columns[n].max()]
     rows = {int(columns[n].argmin()) for n in spread} | {int(columns[n].argmax()) for n in spread}
     rows |= {int(np.argmax(np.abs(columns["rod_offset"]) / columns["grid_width"])), 0}
@@ -151,7 +152,7 @@ def _check_columns(resonator: TorsionalResonator, columns: Mapping[str, Array]) 
 
 
 def _designs(resonator: TorsionalResonator, p: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Return the kernel's columns, (n, 19), and the resonance [Hz]."""
+    """Return the kernel's columns, (n, 20), and the resonance [Hz]."""
     right, left = 0.5 * p["grid_width"] - p["rod_offset"], 0.5 * p["grid_width"] + p["rod_offset"]
     face, height = 0.5 * p["beam_height"], p["pole_height"]
     has_right, has_left = pole_sides(resonator.poles)
@@ -184,6 +185,7 @@ def _designs(resonator: TorsionalResonator, p: Mapping[str, Array]) -> tuple[Arr
         p["restitution"],
         p["load"],
         p["mu"],
+        p["lag"],
     ]
     resonance = np.sqrt(stiffness / inertia) / (2 * np.pi)
     return np.ascontiguousarray(np.stack(columns, axis=-1)), resonance

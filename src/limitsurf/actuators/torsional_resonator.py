@@ -21,6 +21,7 @@ from limitsurf.actuators.resonator_motion import (
     FrequencyResponse,
     ResonatorMotion,
     free_motion,
+    lag_for,
     response,
 )
 from limitsurf.actuators.rim_force import plate_force, rim_force
@@ -245,15 +246,28 @@ class TorsionalResonator:
         """Return amplitude and frequency against the lag; see `resonator_motion.response`."""
         return response(self, voltage, lags)
 
-    def floating(self, load: float, voltage: float, mu: float) -> FloatingPart:
+    def floating(
+        self, load: float, voltage: float, mu: float, lag: float = 0.5 * np.pi
+    ) -> FloatingPart:
         """Return how a part floats on the tips; see `resonator_contact.floating`."""
-        return floating(self, load, voltage, mu)
+        return floating(self, load, voltage, mu, lag)
 
     def contact(
-        self, load: float, voltage: float, mu: float, *, facing: float = 0.0, samples: int = 256
+        self,
+        load: float,
+        voltage: float,
+        mu: float,
+        *,
+        lag: float = 0.5 * np.pi,
+        facing: float = 0.0,
+        samples: int = 256,
     ) -> Any:
         """Return the `OscillatingContact` of the tip; see `resonator_contact.contact`."""
-        return contact(self, load, voltage, mu, facing=facing, samples=samples)
+        return contact(self, load, voltage, mu, lag=lag, facing=facing, samples=samples)
+
+    def lag_for(self, voltage: float, edge_amplitude: float) -> float:
+        """Return the lag that keeps the free edge at an amplitude; see `resonator_motion`."""
+        return lag_for(self, voltage, edge_amplitude)
 
     def sensitivity(
         self, load: float, voltage: float, mu: float, parameters: tuple[str, ...] | None = None

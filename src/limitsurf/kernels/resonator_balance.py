@@ -162,13 +162,18 @@ def _reaction(tips: Tips, part: Float, friction: float) -> tuple[float, float, f
 
 @compiled
 def loaded_motion(
-    grid: Grid, drive: Drive, tips: Tips, contact: ContactLaw, load: float, friction: float
+    grid: Grid,
+    drive: Drive,
+    tips: Tips,
+    contact: ContactLaw,
+    load: float,
+    friction: float,
+    lag: float,
 ) -> tuple[Motion, Float]:
-    """Return the oscillation at its resonance under a load [N], and how the part floats.
+    """Return the oscillation under a load [N], lagging by `lag`, and how the part floats.
 
     `contact.loss` is here the damping over the stiffness [s].
     """
-    lag = 0.5 * math.pi
     free = free_motion(grid, drive, lag)
     amplitude, mean, omega = free.amplitude, free.mean, free.omega
     part = _nothing()
@@ -201,7 +206,7 @@ def sweep_designs(designs: Floats, out: Floats) -> None:
         drive = Drive(d[7], d[8], d[9] > 0.0)
         tips = Tips(d[10], d[11], d[12], d[13])
         law = ContactLaw(d[14], d[15], d[16])
-        motion, part = loaded_motion(grid, drive, tips, law, d[17], d[18])
+        motion, part = loaded_motion(grid, drive, tips, law, d[17], d[18], d[19])
         carried = part.right.mean + part.left.mean
         bias = part.left.signed - part.right.signed
         out[i, 0], out[i, 1], out[i, 2] = motion.amplitude, motion.mean, motion.omega
