@@ -45,7 +45,7 @@ def test_a_sweep_equals_one_by_one(changes):
 
 
 def test_lags_may_vary():
-    lags = np.array([0.5, 0.8, 1.2])
+    lags = np.array([0.4, 0.55, 1.2])
     sweep = sweep_resonators(BASE, 3.4e-7, 75.0, MU, lag=lags)
     parts = [BASE.floating(3.4e-7, 75.0, MU, lag) for lag in lags[:2]]
     assert sweep.offset[:2] == pytest.approx([part.offset for part in parts])

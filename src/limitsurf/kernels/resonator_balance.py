@@ -13,7 +13,10 @@ quarter cycle all of the torque works, the resonance. Fixed-point iteration; fre
 smallest root from rest; under a part it falls from the free amplitude to the largest. The part's
 horizontal velocity is small beside the tips' and is left out of the rubbing.
 
-The method is that of Krylov and Bogoliubov, *Introduction to Non-linear Mechanics*, 1943.
+Against time-stepping of the whole equation the amplitude is right to 3 %, the push to 10 % for a
+light part (80 g/m^2) and 22 % too large for a heavy one (3.4e-7 N): the harmonics that contact
+excites are left out. The method is that of Krylov and Bogoliubov, *Introduction to Non-linear
+Mechanics*, 1943.
 """
 
 from __future__ import annotations
