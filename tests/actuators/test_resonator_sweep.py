@@ -4,6 +4,7 @@ import pytest
 from limitsurf.actuators.resonator_sweep import sensitivity, sweep_resonators
 from limitsurf.actuators.torsional_resonator import TorsionalResonator
 from limitsurf.errors import InputError, LimitSurfError
+from tests.actuators.resonator_twin import twin_floating
 
 BASE = TorsionalResonator.from_model("resonator1994")
 LOAD, VOLTAGE, MU = 3.1e-8, 50.0, 0.3
@@ -42,6 +43,39 @@ def test_a_sweep_equals_one_by_one(changes):
         assert sweep.offset[i] == pytest.approx(part.offset, rel=1e-9, abs=1e-20)
         assert sweep.vertical_force[i] == pytest.approx(one.vertical_force(VOLTAGE))
     assert 10 < (sweep.status == 0).sum() < 60
+
+
+@pytest.mark.parametrize("changes", [{"poles": "none"}, {"driven": "-x", "drive": "biased"}])
+def test_designs_far_from_any_that_were_built(changes):
+    """Four decades of contact, load and Q: nearly all are decided, and equal to the slow twin."""
+    rng, n = np.random.default_rng(0), 2000
+    base = BASE.varied(**changes)
+    varied = {
+        "rod_length": rng.uniform(15e-6, 45e-6, n),
+        "quality": 10 ** rng.uniform(0.5, 3.0, n),
+        "rod_offset": rng.uniform(-15e-6, 15e-6, n),
+        "contact_damping": 10 ** rng.uniform(-9.0, -5.0, n),
+        "contact_stiffness": 10 ** rng.uniform(-1.0, 3.0, n),
+        "pole_height": rng.uniform(0.0, 6e-6, n),
+    }
+    load, voltage = 10 ** rng.uniform(-12.0, -6.3, n), rng.uniform(5.0, 80.0, n)
+    mu, lag = rng.uniform(0.0, 1.0, n), rng.uniform(0.05, 3.1, n)
+    sweep = sweep_resonators(base, load, voltage, mu, lag=lag, **varied)
+    assert np.mean(sweep.status == 4) < 2e-3
+    good = np.flatnonzero(sweep.status == 0)
+    assert len(good) > 0.5 * n
+    compared = 0
+    for i in good[:40]:
+        design = base.varied(**{name: float(column[i]) for name, column in varied.items()})
+        try:
+            twin = twin_floating(design, load[i], voltage[i], mu[i], lag[i])
+        except ValueError:  # the twin's own root finder may lose its bracket
+            continue
+        compared += 1
+        assert sweep.offset_fraction[i] == pytest.approx(twin[4], abs=1e-7)
+        edge = twin[0] * max(design.levers)
+        assert sweep.edge_amplitude[i] == pytest.approx(edge, rel=1e-7)
+    assert compared >= 38
 
 
 def test_lags_may_vary():

@@ -48,7 +48,8 @@ def _at_depth(tips: Tips, tilt: float, amplitude: float, law: ContactLaw, depth:
     top_right = tips.right_height + tips.right * tilt + a_right
     top_left = tips.left_height + tips.left * tilt + a_left
     height = max(top_right, top_left) - depth
-    in_right, in_left = top_right - height, top_left - height
+    in_right = depth - max(top_left - top_right, 0.0)  # not top - height: light touches keep digits
+    in_left = depth - max(top_right - top_left, 0.0)
     return Float(
         in_right <= 2.0 * a_right and in_left <= 2.0 * a_left,
         height,

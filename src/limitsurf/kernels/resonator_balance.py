@@ -182,7 +182,7 @@ def loaded_motion(
     part = _nothing()
     if free.status != OK:
         return free, part
-    for _ in range(_STEPS):
+    for i in range(_STEPS):
         law = ContactLaw(contact.stiffness, contact.loss * omega, contact.restitution)
         part = float_part(tips, mean, amplitude, law, load)
         if not part.ok:
@@ -192,10 +192,14 @@ def loaded_motion(
         constant, cos, sin = constant - reaction[0], cos - reaction[1], sin - reaction[2]
         if cos <= 0.0:
             return Motion(0.0, mean, omega, STALLED), part
-        omega = _frequency(grid, sin / cos)
-        before = amplitude
-        amplitude, mean = cos / (grid.damping * omega), constant / grid.stiffness
-        if abs(amplitude - before) <= _TOLERANCE * amplitude:
+        target = _frequency(grid, sin / cos)
+        up, tilt = cos / (grid.damping * target) - amplitude, constant / grid.stiffness - mean
+        share = 1.0 if i < 100 else (0.3 if i < 300 else 0.03)  # two stiff tips make it swing
+        amplitude, mean = amplitude + share * up, mean + share * tilt
+        change = max(abs(up), abs(tilt)) / amplitude
+        change = max(change, abs(target / omega - 1.0))
+        omega += share * (target - omega)
+        if change <= 20.0 * _TOLERANCE:
             return Motion(amplitude, mean, omega, OK), part
     return Motion(amplitude, mean, omega, NOT_CONVERGED), part
 
