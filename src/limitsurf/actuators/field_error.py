@@ -53,6 +53,17 @@ def direction_errors(realised: RealisedField, radius: float) -> DirectionError:
 
     Circles where the ideal field cancels itself to less than half, as on the line of a squeeze, and
     those that reach over the lattice's edge are left out.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.force_fields import uniform_field
+    >>> from limitsurf.actuators.pixel_lattice import PixelLattice, headings
+    >>> from limitsurf.actuators.realised_field import realise
+    >>> lattice = PixelLattice.rectangular(32, 32, 200e-6, headings(4))
+    >>> errors = [direction_errors(realise(lattice, uniform_field(0.5), method), 1e-3)
+    ...           for method in ("nearest", "dither")]
+    >>> [f"{error.worst:.2f}" for error in errors]
+    ['0.50', '0.08']
     """
     centers = realised.lattice.pixel_centers
     if not (np.isfinite(radius) and radius > 0.0):
@@ -86,6 +97,16 @@ def load_error(realised: RealisedField, part: Part, pose: ArrayLike = (0.0, 0.0,
         The part.
     pose : (3,) float
         Pose of the part [m, m, rad].
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.force_fields import uniform_field
+    >>> from limitsurf.actuators.pixel_lattice import PixelLattice, headings
+    >>> from limitsurf.actuators.realised_field import realise
+    >>> lattice = PixelLattice.rectangular(32, 32, 200e-6, headings(4))
+    >>> error = load_error(realise(lattice, uniform_field(0.5)), Part.from_file("paper_t"))
+    >>> abs(error.moment) < 0.05
+    True
     """
     outline, lattice = part.at(pose), realised.lattice
     shapely.prepare(outline)

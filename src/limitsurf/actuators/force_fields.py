@@ -98,6 +98,11 @@ def elliptic_field(stiffness: ArrayLike, reach: float, axis: float = 0.0) -> Fie
         Distance of full push [m].
     axis : float
         Angle of the first axis [rad].
+
+    Examples
+    --------
+    >>> elliptic_field((2.0, 1.0), 1e-3)(np.array([[5e-4, 5e-4]]))
+    array([[-0.5 , -0.25]])
     """
     alpha, beta = (float(s) for s in np.asarray(stiffness, np.float64))
     if not (min(alpha, beta) > 0.0 and np.isfinite(alpha + beta)):

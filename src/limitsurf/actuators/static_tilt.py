@@ -65,6 +65,13 @@ def equilibrium(resonator: TorsionalResonator, voltage: float) -> float:
     ------
     BeyondPullIn
         There is none.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.torsional_resonator import TorsionalResonator
+    >>> one = TorsionalResonator.from_model("resonator1994")
+    >>> round(1e9 * equilibrium(one, 50.0) * one.levers[1])  # nm at the edge
+    17
     """
     if not (np.isfinite(voltage) and voltage >= 0.0):
         raise InputError("voltage", "must be finite and not negative", value=voltage)

@@ -272,8 +272,8 @@ class TorsionalResonator:
     def sensitivity(
         self, load: float, voltage: float, mu: float, parameters: tuple[str, ...] | None = None
     ) -> Mapping[str, Mapping[str, float]]:
-        """Return relative sensitivities to the assumed numbers; see `resonator_sweep`."""
-        from limitsurf.actuators.resonator_sweep import sensitivity
+        """Return relative sensitivities to the assumed numbers; see `resonator_sensitivity`."""
+        from limitsurf.actuators.resonator_sensitivity import sensitivity
 
         return sensitivity(self, load, voltage, mu, parameters)
 
