@@ -20,9 +20,10 @@ def test_it_names_what_it_compiled(capsys):
 def test_afterwards_nothing_is_compiled(tmp_path):
     """In a new process the same calls find everything in the cache: no new files."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    subprocess.run([sys.executable, "-m", "limitsurf.cli", "warm-up"], env=environment, check=True)
-    compiled = {p for p in tmp_path.rglob("*.nbc")}
+    command = "from limitsurf.cli.main import main; main(['warm-up', '--processes', '1'])"
+    subprocess.run([sys.executable, "-c", command], env=environment, check=True)
+    compiled = set(tmp_path.rglob("*.nbc"))
     assert len(compiled) > 50
     calls = "from limitsurf.cli.warm_up import GROUPS\nfor call in GROUPS.values(): call()"
     subprocess.run([sys.executable, "-c", calls], env=environment, check=True)
-    assert {p for p in tmp_path.rglob("*.nbc")} == compiled
+    assert set(tmp_path.rglob("*.nbc")) == compiled

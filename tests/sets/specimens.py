@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from limitsurf.sets.contact_sum import ContactSum
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.sets.h_polytope import HPolytope
 from limitsurf.sets.linear_image import LinearImage, transport
@@ -71,6 +72,14 @@ SPECIMENS = {
         transport([0.3, 0.4]), MinkowskiSum(contact(1.0, 0.0), contact(-1.0, 0.0)), [0.0, 1.0, 0.0]
     ),
     "shadow": LinearImage([[1, 0, 0], [0, 1, 0]], VPolytope(_cloud)),
+    "contact sum": ContactSum(_rng.normal(size=(12, 2)), _rng.uniform(0.1, 1.0, 12)),
+    "active contact sum": ContactSum(_cloud[:5, :2], [0.1, 0.5, 0.3, 0.0, 1.0], [1.0, -2.0, 0.5]),
+    "elliptic contact sum": ContactSum(
+        _rng.normal(size=(7, 2)), _rng.uniform(0.1, 1.0, 7), None, _rng.normal(size=(7, 3))
+    ),
+    "sum of one contact": ContactSum([[0.5, -1.0]], [1.0]),
+    "sum of no contacts": ContactSum(np.empty((0, 2)), [], [1.0, 2.0, 3.0]),
+    "far contact sum": ContactSum(_cloud[:9, :2] + [300.0, -200.0], np.full(9, 0.3)),
     "quartic": PolynomialSet(
         [[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 2, 0], [2, 0, 0], [2, 0, 2]],
         [1.0, 2.0, 3.0, 0.5, 0.3, 1.0],

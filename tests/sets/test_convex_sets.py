@@ -4,7 +4,7 @@ import cvxpy as cp
 import numpy as np
 import pytest
 
-from limitsurf.errors import InputError, LimitSurfError
+from limitsurf.errors import InputError, LimitSurfError, SolveFailed
 from limitsurf.sets.arguments import read_metric
 from limitsurf.sets.convex_set import ConvexSet
 from limitsurf.sets.linear_image import LinearImage
@@ -217,3 +217,22 @@ def test_repr_is_readable(specimen):
     assert type(specimen).__name__ in repr(specimen)
     assert "\n" not in repr(specimen)
     assert len(repr(specimen)) < 300
+
+
+def test_a_solver_that_stops_early_raises_or_hands_over_its_best(monkeypatch):
+    """Clarabel with one iteration: the error carries the points that throw=False returns."""
+    import clarabel
+
+    from limitsurf.conic import solve
+
+    settings = clarabel.DefaultSettings()
+    settings.verbose, settings.max_iter = False, 1
+    monkeypatch.setattr(solve, "_settings", lambda: settings)
+    total = SPECIMENS["disk and box"]
+    p = np.array([[9.0, 8.0, 7.0], [5.0, 5.0, 5.0]])
+    with pytest.raises(SolveFailed, match="2 of 2 points not solved") as caught:
+        total.project(p)
+    given = total.project(p, throw=False)
+    assert np.array_equal(given.point, caught.value.best.point)
+    assert np.all(given.status == Status.FAILED)
+    assert given.point.shape == p.shape

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -63,17 +64,16 @@ class ContactSet:
     ) -> None:
         self._position = as_array("position", position, None, 2)
         n = len(self._position)
-        one_for_all = np.ndim(radius) == 0
-        self._radius = as_array("radius", np.full(n, radius) if one_for_all else radius, n)
         self._offset = None if offset is None else as_array("offset", offset, n, 2)
         self._ellipse = None if ellipse is None else as_array("ellipse", ellipse, n, 2, 2)
         if sides is not None and ellipse is not None:
             raise InputError("sides", "are for disks", remedy="leave out ellipse or sides")
-        if sides is not None and (sides != int(sides) or sides < 3):
+        if sides is not None and (not isinstance(sides, Integral) or sides < 3):
             raise InputError("sides", "must be a whole number from 3 on", value=sides)
-        if (self._radius < 0.0).any():
-            raise InputError("radius", "has negative entries", remedy="friction radii are >= 0")
         self._sides = sides
+        stretch = None if self._ellipse is None else _stretches(self._ellipse)
+        radii = np.full(n, radius) if np.ndim(radius) == 0 else radius
+        self._sum = ContactSum(self._position, radii, self.offset_load, stretch)
 
     @property
     def position(self) -> Array:
@@ -83,7 +83,7 @@ class ContactSet:
     @property
     def radius(self) -> Array:
         """Friction radii (N,) [N]."""
-        return self._radius
+        return self._sum.radius
 
     @property
     def offset(self) -> Array:
@@ -120,11 +120,10 @@ class ContactSet:
     @cached_property
     def _surface(self) -> ConvexSet:
         if self._sides is None:
-            stretch = None if self._ellipse is None else _stretches(self._ellipse)
-            return ContactSum(self._position, self._radius, self.offset_load, stretch)
+            return self._sum
         polygons = [
             polygonal_contact(r, m, self._sides)[0]
-            for r, m in zip(self._position, self._radius, strict=True)
+            for r, m in zip(self._position, self.radius, strict=True)
         ]
         return MinkowskiSum(VPolytope(self.offset_load[None]), *polygons)
 
@@ -156,7 +155,7 @@ class ContactSet:
         """Return the same contacts from another reference point, at r from the old one [m]."""
         shifted = self._position - as_array("r", r, 2)
         return ContactSet(
-            shifted, self._radius, self._offset, ellipse=self._ellipse, sides=self._sides
+            shifted, self.radius, self._offset, ellipse=self._ellipse, sides=self._sides
         )
 
     def __repr__(self) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import SolveFailed
-from limitsurf.sets.arguments import as_array, read_metric
+from limitsurf.sets.arguments import as_array, as_points, read_metric
 from limitsurf.sets.convex_set import ConvexSet
 from limitsurf.sets.projection import Projection
 
@@ -106,7 +106,8 @@ def friction_load(
     """
     if dissipation is not None:
         return _with_dissipation(surface, as_array("external", external, 3), metric, dissipation)
-    load = np.asarray(external, dtype=np.float64)
+    rows, shape = as_points("external", external, 3)
+    load = rows.reshape(*shape, 3)
     projection = surface.project(-load, metric)
     friction = projection.point
     sticks = np.asarray(~projection.twist.any(axis=-1))
@@ -144,10 +145,13 @@ def _with_dissipation(
         if share == 1.0 and np.linalg.norm(rest) <= 1e-12 * (np.linalg.norm(F) + abs(lowest)):
             break
     assert projection is not None
-    left = float(np.sqrt(rest @ np.linalg.solve(Q, rest)))
-    if share < 1e-6 and left > 1e-6 * np.linalg.norm(F):
-        raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     rate = -smooth.gradient(v)
+    left, size = (
+        float(np.sqrt(sum(x @ np.linalg.solve(Q, x) for x in loads)))
+        for loads in ((rest,), (F, projection.point, rate))
+    )
+    if not left <= 1e-6 * size:
+        raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     friction = projection.point
     sticks = np.asarray(not v.any())
     net = F + friction + rate

@@ -22,13 +22,14 @@ from limitsurf.kernels.project_loads import (
     TWISTS,
     project_ragged,
 )
-from limitsurf.sets.arguments import as_array, as_points, read_metric
+from limitsurf.sets.arguments import as_array, as_points, check_effort, read_metric
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM
 
 __all__ = ["project_many"]
 
 Array = NDArray[np.float64]
+_ARRAYS = "give (position, radius, counts[, offset])"
 Ragged = tuple[Array, Array, Array, Array]  # positions, radii, offsets or none, counts
 
 
@@ -67,11 +68,18 @@ def project_many(
     >>> project_many(([[1.0, 0.0], [-1.0, 0.0]], [0.5, 0.5], [2]), [[0.0, 0.0, 3.0]]).inside
     array([False])
     """
-    sets = [c for c in contacts if isinstance(c, ContactSet)]
-    if len(sets) == len(contacts):
+    check_effort(tol, threads)
+    try:
+        given = list(contacts)
+    except TypeError as error:
+        raise InputError("contacts", "are neither ContactSets nor arrays") from error
+    sets = [c for c in given if isinstance(c, ContactSet)]
+    if len(sets) == len(given):
         position, radius, offset, counts = _from_sets(sets)
+    elif not sets and 3 <= len(given) <= 4:
+        position, radius, offset, counts = _from_arrays(*given)
     else:
-        position, radius, offset, counts = _from_arrays(*contacts)
+        raise InputError("contacts", "are neither ContactSets nor arrays", remedy=_ARRAYS)
     points, shape = as_points("loads", loads, 3)
     if shape != (len(counts),):
         raise InputError("loads", f"has shape {np.shape(loads)}, not ({len(counts)}, 3)")
@@ -82,7 +90,7 @@ def project_many(
     def solve(first: int, last: int) -> None:
         project_ragged(x, y, radius, offset, start, points, C, tol, first, last, answers)
 
-    shares = np.linspace(0, len(points), max(threads, 1) + 1).astype(int).tolist()
+    shares = np.linspace(0, len(points), threads + 1).astype(int).tolist()
     if threads > 1:
         with ThreadPoolExecutor(threads) as pool:
             list(pool.map(solve, shares[:-1], shares[1:]))

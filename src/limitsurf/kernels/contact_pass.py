@@ -47,6 +47,7 @@ __all__ = [
     "kink_of",
     "new_table",
     "smoothed_sums",
+    "stretch_of",
     "sum_error",
 ]
 
@@ -115,6 +116,7 @@ def sum_error(n: int) -> float:
 
 @compiled
 def stretch_of(contacts: Contacts, i: int) -> Vector:
+    """Return xx, xy, yy of S of contact i."""
     data = contacts.data
     if data.shape[0] == 3:
         return 1.0, 0.0, 1.0
@@ -353,6 +355,8 @@ def _exact_sums(
     for q in range(table.shape[0] - 1):
         if table[q, 11] > 0.0:
             mass += _add_slow(contacts, q, v, tau, kink, total)
+    if mass == 0.0:  # only contacts without friction were left out
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0
     return kink_of(contacts, kink, mass), 0.0
 
 

@@ -21,6 +21,7 @@ from limitsurf.kernels.contact_problem import (
     GAVE_UP,
     HOLD,
     PASSES,
+    SLIDE,
     Problem,
     Setting,
     Witness,
@@ -29,7 +30,7 @@ from limitsurf.kernels.contact_problem import (
     speed,
     times_metric,
 )
-from limitsurf.kernels.kink_step import Pair, kink_columns, kink_step, snapped
+from limitsurf.kernels.kink_step import FLAT, Pair, axes_of, kink_columns, kink_step, snapped
 from limitsurf.kernels.symmetric3 import form, plus, plus_outer, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 
@@ -62,13 +63,12 @@ def _force_at_rest(setting: Setting, kink: Kink, rest: Vector) -> Pair:
     """Return f in the unit disk with ``|rest - m P f|_W`` least, or nearly so at its rim."""
     one, two = kink_columns(kink)
     w1, w2 = times_metric(setting, one), times_metric(setting, two)
-    a, b, d = dot(one, w1), dot(one, w2), dot(two, w2)
+    high, low, cos, sin = axes_of(dot(one, w1), dot(one, w2), dot(two, w2))
     p, q = dot(w1, rest) / kink.mass, dot(w2, rest) / kink.mass
-    det = a * d - b * b
-    if det > 0.0:
-        p, q = (d * p - b * q) / det, (a * q - b * p) / det
-    size = max(length(p, q), 1.0)
-    return p / size, q / size
+    a = (cos * p + sin * q) / high
+    b = (cos * q - sin * p) / low if low > FLAT * high else 0.0
+    size = max(length(a, b), 1.0)
+    return (cos * a - sin * b) / size, (sin * a + cos * b) / size
 
 
 @compiled
@@ -143,7 +143,7 @@ def _newton_on_sphere(problem: Problem, look: Look) -> tuple[bool, Vector, Pair,
     """
     kink, one, two, u, t = look.kink, look.one, look.two, look.u, look.t
     setting = problem.setting
-    H = plus(hessian(problem.table), t, setting.Q)
+    H = plus(hessian(problem.table), abs(t), setting.Q)
     B = plus_outer(H, setting.reach * setting.unit + abs(t), look.Qd)
     b = along(scaled(t, look.Qd), -1.0, look.left)
     ok, step, f, still = kink_step(B, b, kink, u)
@@ -228,11 +228,13 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
 def pin(problem: Problem, best: Floats, v: Vector) -> Next:
     """Try rotations about each of the contacts near the centre of rotation, nearest first.
 
-    Where two contacts nearly coincide Newton's steps do not tell which of them stands still.
+    Where two contacts nearly coincide Newton's steps do not tell which of them stands still. The
+    best rotation is a start for `slide`: the centre may lie beside the contact.
     """
     contacts, setting = problem.contacts, problem.setting
     d = _on_sphere(setting, v)
     tau, slower = abs(d[2]) * setting.spacing, -1.0
+    least, start = np.inf, d
     for _ in range(_PINS):
         nearest, found = np.inf, -1
         for i in range(contacts.data.shape[1]):
@@ -244,6 +246,9 @@ def pin(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         slower = nearest
         about = _on_sphere(setting, snapped(kink_of(contacts, found, 0.0), d))
-        if _look(problem, best, about, (0.0, 0.0), -1, False).bound <= setting.target:
+        bound = _look(problem, best, about, (0.0, 0.0), -1, True).bound
+        if bound <= setting.target:
             return CERTIFIED, about, 0.0
-    return GAVE_UP, d, 0.0
+        if bound < least:
+            least, start = bound, about
+    return (SLIDE if least < np.inf else GAVE_UP), start, 0.0

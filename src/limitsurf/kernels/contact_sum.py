@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Contacts, contact_velocity, kink_of
+from limitsurf.kernels.contact_pass import Contacts, contact_velocity, kink_of, stretch_of
 from limitsurf.kernels.contact_problem import (
     BOUND,
     CERTIFIED,
@@ -29,14 +29,15 @@ from limitsurf.kernels.contact_problem import (
     Problem,
     Witness,
     keep,
+    norm,
     residual,
     times_metric,
 )
 from limitsurf.kernels.contact_slide import pin, slide
 from limitsurf.kernels.contact_smooth import hold, smooth, smooth_start
-from limitsurf.kernels.kink_step import kink_columns, snapped, step_of_solved
+from limitsurf.kernels.kink_step import kink_columns, step_of_solved
 from limitsurf.kernels.primal_dual import primal_dual
-from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
+from limitsurf.kernels.vectors import Vector, along, dot, scaled
 
 __all__ = ["COLD", "solve_contact_sum", "witness_forces"]
 
@@ -45,6 +46,7 @@ COLD = -1.0
 _PASSES = 40  # after that many the stages are stopped
 _RATIO = 0.3  # contacts that much faster than eps are taken to slide
 _ZERO = (0.0, 0.0, 0.0)
+_EPS = float(np.finfo(np.float64).eps)
 
 
 @compiled
@@ -80,17 +82,31 @@ def _alone(problem: Problem, best: Floats) -> None:
         (0.0, 0.0),
     )
     u = dot(one, v), dot(two, v)
-    size = length(u[0], u[1])
-    if still and kink.stretch == (1.0, 0.0, 1.0):
-        v, size = snapped(kink, v), 0.0
-    elif not still and size > 0.0:
-        f = u[0] / size, u[1] / size
+    sliding = 0.0 if still else max(f[0] * u[0] + f[1] * u[1], 0.0)
+    # the answer is exact for a load of which the twist has the velocity along f, or zero
+    x = _least_twist(one, two, u[0] - sliding * f[0], u[1] - sliding * f[1])
+    v = along(v, -1.0, x)
     fx, fy = kink.mass * f[0], kink.mass * f[1]
     load = along(along(_ZERO, fx, one), fy, two)
-    gap = 2.0 * kink.mass * size if still else 0.0
+    left = along(c, -1.0, load)
     best[PASSES] += 1
-    bound = math.sqrt(residual(setting, along(c, -1.0, load), v) ** 2 + gap)
-    keep(best, bound, load, v, Witness(v, 0.0, first, fx, fy))
+    witness = Witness(v, 0.0, first, fx, fy)
+    if norm(setting, left) <= setting.rounding:
+        keep(best, norm(setting, left), load, _ZERO, witness)
+    else:
+        keep(best, residual(setting, left, v), load, v, witness)
+
+
+@compiled
+def _least_twist(one: Vector, two: Vector, ux: float, uy: float) -> Vector:
+    """Return the least x with ``P'x = u``, P the columns one and two; rank one up to rounding."""
+    a, b, d = dot(one, one), dot(one, two), dot(two, two)
+    det = a * d - b * b
+    if det > 16.0 * _EPS * _EPS * (a + d) ** 2:
+        ux, uy = (d * ux - b * uy) / det, (a * uy - b * ux) / det
+    elif a + d > 0.0:
+        ux, uy = ux / (a + d), uy / (a + d)
+    return along(scaled(ux, one), uy, two)
 
 
 @compiled
@@ -136,6 +152,8 @@ def solve_contact_sum(problem: Problem, best: Floats, v: Vector, eps: float, roo
             stage, v, eps = slide(problem, best, v)
             if stage == GAVE_UP:
                 stage, v, eps = pin(problem, best, v)
+            if stage == SLIDE:
+                stage, v, eps = slide(problem, best, v)
     if stage != CERTIFIED:
         v, eps = smooth_start(problem.setting)
         primal_dual(problem, best, v, eps, room)
@@ -147,17 +165,17 @@ def witness_forces(contacts: Contacts, best: Floats, forces: Floats) -> None:
     """Fill the forces (N, 2) of the witness of an answer that `primal_dual` did not find."""
     v, eps = (best[WITNESS], best[WITNESS + 1], best[WITNESS + 2]), best[EPS]
     x, y, m, j = contacts.data[0], contacts.data[1], contacts.data[2], int(best[KINK])
-    shared = 0.0
+    shared, at_kink = 0.0, stretch_of(contacts, max(j, 0))
     for i in range(x.shape[0]):
         ux, uy = contact_velocity(contacts, i, v)
         s = math.sqrt(ux * ux + uy * uy + eps * eps)
         k = m[i] / s if s > 0.0 else 0.0
         forces[i, 0], forces[i, 1] = k * ux, k * uy
-        if j >= 0 and x[i] == x[j] and y[i] == y[j]:
+        if j >= 0 and x[i] == x[j] and y[i] == y[j] and stretch_of(contacts, i) == at_kink:
             shared += m[i]
-    if j < 0:
+    if j < 0 or shared == 0.0:
         return
     for i in range(x.shape[0]):
-        if x[i] == x[j] and y[i] == y[j]:
+        if x[i] == x[j] and y[i] == y[j] and stretch_of(contacts, i) == at_kink:
             forces[i, 0] = best[KINK_FORCE] * m[i] / shared
             forces[i, 1] = best[KINK_FORCE + 1] * m[i] / shared

@@ -17,14 +17,24 @@ import numpy as np
 
 from limitsurf.kernels.compile import compiled
 from limitsurf.kernels.contact_pass import Kink
-from limitsurf.kernels.symmetric3 import Symmetric, factored, solve
+from limitsurf.kernels.symmetric3 import Symmetric, factored, solve, times
 from limitsurf.kernels.vectors import Vector, along, dot, length, scaled
 
-__all__ = ["Pair", "kink_columns", "kink_force_in_plane", "kink_step", "snapped", "step_of_solved"]
+__all__ = [
+    "FLAT",
+    "Pair",
+    "axes_of",
+    "kink_columns",
+    "kink_force_in_plane",
+    "kink_step",
+    "snapped",
+    "step_of_solved",
+]
 
 Pair = tuple[float, float]
 
 _EPS = float(np.finfo(np.float64).eps)
+FLAT = 16.0 * _EPS
 
 
 @compiled
@@ -36,17 +46,45 @@ def kink_columns(kink: Kink) -> tuple[Vector, Vector]:
 
 
 @compiled
-def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
-    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, for ``|K^-1 q| > 1``."""
-    mean, half = 0.5 * (k00 + k11), 0.5 * (k00 - k11)
-    spread = length(half, k01)
-    high, low = mean + spread, max(mean - spread, 0.0)
+def axes_of(a: float, b: float, d: float) -> tuple[float, float, float, float]:
+    """Return the eigenvalues of ``[[a, b], [b, d]]``, larger first, and the axis of the larger."""
+    half = 0.5 * (a - d)
+    spread = length(half, b)
+    high = 0.5 * (a + d) + spread
+    low = max(a * d - b * b, 0.0) / high if high > 0.0 else 0.0
     cos, sin = 1.0, 0.0
-    if spread > 0.0:  # the axis of the larger eigenvalue, without cancellation
-        cos, sin = (spread + half, k01) if half >= 0.0 else (k01, spread - half)
+    if spread > 0.0:  # without cancellation
+        cos, sin = (spread + half, b) if half >= 0.0 else (b, spread - half)
         size = length(cos, sin)
         cos, sin = cos / size, sin / size
+    return high, low, cos, sin
+
+
+@compiled
+def kink_force_in_plane(
+    k00: float, k01: float, k11: float, q: Pair, line: bool = False
+) -> tuple[Pair, bool]:
+    """Return the force f in the unit disk, and whether the contact stands still (p = 0).
+
+    `line` says that the contact pushes along one line only: K and q have no other component.
+    """
+    high, low, cos, sin = axes_of(k00, k01, k11)
     a, b = cos * q[0] + sin * q[1], cos * q[1] - sin * q[0]  # in the axes of K
+    if high == 0.0 or (a == 0.0 and b == 0.0):
+        return (0.0, 0.0), True
+    if line:
+        fa = max(-1.0, min(a / high, 1.0))
+        return (cos * fa, sin * fa), abs(a) <= high
+    if low > 0.0 and length(a / high, b / low) <= 1.0:
+        fa, fb = a / high, b / low
+        return (cos * fa - sin * fb, sin * fa + cos * fb), True
+    fa, fb = _secular_force(high, low, a, b)
+    return (cos * fa - sin * fb, sin * fa + cos * fb), False
+
+
+@compiled
+def _secular_force(high: float, low: float, a: float, b: float) -> Pair:
+    """Return the unit f with ``(sigma I + K) f = q``, sigma > 0, in the axes of K."""
     left, right = max(abs(a) - high, abs(b) - low, 0.0), length(a, b)
     sigma = left
     for _ in range(60):
@@ -65,25 +103,14 @@ def _secular_force(k00: float, k01: float, k11: float, q: Pair) -> Pair:
         sigma = step
     fa, fb = a / (sigma + high), b / (sigma + low)
     norm = length(fa, fb)
-    return (cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm
-
-
-@compiled
-def kink_force_in_plane(k00: float, k01: float, k11: float, q: Pair) -> tuple[Pair, bool]:
-    """Return the force f in the unit disk, and whether the contact stands still (p = 0)."""
-    det = k00 * k11 - k01 * k01
-    if det > 0.0:
-        f = (k11 * q[0] - k01 * q[1]) / det, (k00 * q[1] - k01 * q[0]) / det
-        if f[0] * f[0] + f[1] * f[1] <= 1.0:
-            return f, True
-    if q[0] == 0.0 and q[1] == 0.0:
-        return (0.0, 0.0), True
-    return _secular_force(k00, k01, k11, q), False
+    return fa / norm, fb / norm
 
 
 @compiled
 def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
     """Return whether B is positive definite, the step d, the force f, and whether p = 0."""
+    if kink.contact >= 0 and kink.stretch == (1.0, 0.0, 1.0):
+        return _step_about(B, b, kink, u)
     ok, L = factored(B)
     if not ok:
         return False, b, (0.0, 0.0), False
@@ -96,6 +123,57 @@ def kink_step(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vecto
 
 
 @compiled
+def _unit_force(a: float, b: float, d: float, m: float, r: Pair) -> tuple[Pair, float]:
+    """Return the unit f, and sigma, with ``(m I + sigma A) f = r``, for ``|r| > m``."""
+    high, low, cos, sin = axes_of(a, b, d)
+    ra, rb = cos * r[0] + sin * r[1], cos * r[1] - sin * r[0]  # in the axes of A
+    excess = length(ra, rb) - m
+    sigma = left = max(excess / high, (abs(rb) - m) / low)
+    right = excess / low
+    for _ in range(60):
+        wa, wb = m + sigma * high, m + sigma * low
+        square = (ra / wa) ** 2 + (rb / wb) ** 2
+        norm = math.sqrt(square)
+        if norm > 1.0:
+            left = sigma
+        else:
+            right = sigma
+        falls = (ra / wa) ** 2 * high / wa + (rb / wb) ** 2 * low / wb
+        step = sigma + (norm - 1.0) * square / falls
+        if not left <= step <= right:
+            step = 0.5 * (left + right)
+        if abs(step - sigma) <= 2.0 * _EPS * step:
+            break
+        sigma = step
+    fa, fb = ra / (m + sigma * high), rb / (m + sigma * low)
+    norm = length(fa, fb)
+    return ((cos * fa - sin * fb) / norm, (sin * fa + cos * fb) / norm), sigma
+
+
+@compiled
+def _step_about(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
+    """Return what `kink_step` does, for a disk."""
+    n, m = (kink.y, -kink.x, 1.0), kink.mass
+    Bn = times(B, n)
+    turning, gw = dot(n, Bn), dot(n, b)
+    if not turning > 0.0:
+        return False, b, (0.0, 0.0), False
+    cx, cy = Bn[0] / turning, Bn[1] / turning
+    a00, a01, a11 = B[0] - cx * Bn[0], B[1] - cx * Bn[1], B[2] - cy * Bn[1]
+    if not (a00 > 0.0 and a00 * a11 - a01 * a01 > 0.0):
+        return False, b, (0.0, 0.0), False
+    r = a00 * u[0] + a01 * u[1] - b[0] + cx * gw, a01 * u[0] + a11 * u[1] - b[1] + cy * gw
+    still = length(r[0], r[1]) <= m
+    if still:
+        f, sigma = (r[0] / m, r[1] / m), 0.0
+    else:
+        f, sigma = _unit_force(a00, a01, a11, m, r)
+    dx, dy = sigma * f[0] - u[0], sigma * f[1] - u[1]
+    w = -(gw / turning + cx * dx + cy * dy)
+    return True, along((dx, dy, 0.0), w, n), f, still
+
+
+@compiled
 def step_of_solved(
     z: Vector, k1: Vector, k2: Vector, kink: Kink, u: Pair
 ) -> tuple[Vector, Pair, bool]:
@@ -103,7 +181,9 @@ def step_of_solved(
     one, two = kink_columns(kink)
     m = kink.mass
     q = u[0] - dot(one, z), u[1] - dot(two, z)
-    f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q)
+    r, s, t = kink.stretch
+    line = abs(r * t - s * s) <= 16.0 * _EPS * (r * r + 2.0 * s * s + t * t)
+    f, still = kink_force_in_plane(m * dot(one, k1), m * dot(one, k2), m * dot(two, k2), q, line)
     return along(along(scaled(-1.0, z), -m * f[0], k1), -m * f[1], k2), f, still
 
 

@@ -31,6 +31,7 @@ from limitsurf.kernels.contact_problem import (
     residual,
     speed,
 )
+from limitsurf.kernels.kink_polish import force_gap, polish_kinks, velocity_rounding
 from limitsurf.kernels.symmetric3 import Symmetric, form, plus, plus_outer, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, length
 
@@ -40,6 +41,8 @@ _EPS = float(np.finfo(np.float64).eps)
 _ZERO = (0.0, 0.0, 0.0)
 _FAST = 1e4  # contacts that much faster than eps take the force of their velocity
 _PASSES = 150
+_CLOSE = 1e-4  # eps, relative to the speed, from which kinks are tried as they are
+_STILL = 30.0  # contacts slower than that many eps are taken to stand still
 
 
 @compiled
@@ -92,17 +95,9 @@ def _pass(
             moving = along(along(moving, m * ux / size, one), m * uy / size, two)
         else:
             moving = along(along(moving, fx, one), fy, two)
-            gap += _gap(m, fx / m, fy / m, ux, uy, size)
+            if size > velocity_rounding(one, two, v):
+                gap += force_gap(m, fx / m, fy / m, ux, uy, size)
     return h, g, A, moving, resting, gap
-
-
-@compiled
-def _gap(m: float, fx: float, fy: float, ux: float, uy: float, size: float) -> float:
-    """Return ``2 m (|u| - f.u)``, f in the unit disk, without cancellation."""
-    if size == 0.0:
-        return 0.0
-    apart = (ux / size - fx) ** 2 + (uy / size - fy) ** 2
-    return m * size * (apart + max(1.0 - fx * fx - fy * fy, 0.0))
 
 
 @compiled
@@ -169,10 +164,15 @@ def primal_dual(problem: Problem, best: Floats, v: Vector, eps: float, room: Flo
             return
         slope = -dot(rest, step)
         _update_forces(contacts, forces, v, step, eps)
-        if speed(setting, step) <= 0.5 * max(eps, 0.1 * speed(setting, v)):
+        if speed(setting, step) <= max(eps, 1e-14 * speed(setting, v)):
             if eps <= least:
                 idle += 1
                 if idle > 4 and best[BOUND] > 0.5 * old:
                     return
+            slow = _STILL * eps
+            if eps < _CLOSE * speed(setting, v) and polish_kinks(
+                problem, best, v, slow, forces, room
+            ):
+                return
             eps = max(0.1 * eps, least)
             value_old = np.inf

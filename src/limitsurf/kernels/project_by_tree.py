@@ -41,7 +41,7 @@ from limitsurf.kernels.vectors import Vector, row
 __all__ = ["project_by_tree"]
 
 _ZERO = (0.0, 0.0, 0.0)
-_TAIL = 0.1  # share of the tolerance that the tails of the cells may take together
+_TAIL = 0.3  # share of the tolerance that the tails of the cells may take together
 
 
 @compiled

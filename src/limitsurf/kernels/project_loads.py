@@ -66,6 +66,7 @@ _OUTSIDE, _INSIDE, FAILED, _LOOSE = 0, 1, 2, 3
 _WRONG = 1e-6  # a bound above this, relative to the size, is no answer
 HELD_BY_FEW = -2
 _ZERO = (0.0, 0.0, 0.0)
+_EPS = float(np.finfo(np.float64).eps)
 
 
 class Cloud(NamedTuple):
@@ -199,10 +200,15 @@ def write_answer(
     for k in range(7):
         answer[9 + k] = best[WITNESS + k]
     total = best[BOUND] + setting.rounding if setting.reach > 0.0 else 0.0
+    if setting.reach > 0.0:  # the center is taken off and added again, and may be large
+        square, a = 0.0, cloud.center
+        for b in C:
+            square += (abs(b[0] * a[0]) + abs(b[1] * a[1]) + abs(b[2] * a[2])) ** 2
+        total += 2.0 * _EPS * math.sqrt(square)
     answer[16] = 0.0 if inside else math.sqrt(dot(z, z))
     answer[17], answer[18] = total, best[PASSES]
     answer[19] = _INSIDE if inside else _OUTSIDE
-    if not total <= _WRONG * setting.scale:
+    if not (total <= max(_WRONG, tol) * setting.scale and total < np.inf):
         answer[19] = FAILED
     elif total > tol * setting.scale:
         answer[19] = _LOOSE

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 
-__all__ = ["Metric", "as_array", "as_points", "as_rows", "lifted", "read_metric"]
+__all__ = ["Metric", "as_array", "as_points", "as_rows", "check_effort", "lifted", "read_metric"]
 
 Array = NDArray[np.float64]
 
 
-def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
+def as_array(name: str, value: ArrayLike, *shape: int | None, copy: bool = True) -> Array:
     """Return a read-only float array of the given shape; None leaves a length open.
+
+    Without `copy` it may be the caller's own array, as it is: for what is copied anyway.
 
     Raises
     ------
@@ -24,7 +27,7 @@ def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
         No numbers, not finite, or another shape; names the argument and both shapes.
     """
     try:
-        array = np.array(value, dtype=np.float64)
+        array = np.array(value, dtype=np.float64, copy=copy or None)
     except (TypeError, ValueError) as error:
         raise InputError(name, "is no array of numbers", remedy="check its entries") from error
     if array.size == 0 and array.ndim < len(shape):
@@ -37,7 +40,8 @@ def as_array(name: str, value: ArrayLike, *shape: int | None) -> Array:
         raise InputError(name, f"has shape {array.shape}, not {wanted}".replace("'", ""))
     if not np.isfinite(array).all():
         raise InputError(name, "has entries that are not finite", remedy="remove NaN and inf")
-    array.setflags(write=False)
+    if copy:
+        array.setflags(write=False)
     return array
 
 
@@ -60,6 +64,14 @@ def as_rows(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ..
     rows = np.ascontiguousarray(points.reshape(-1, dim))
     # kernels are compiled anew for read-only arrays
     return rows if rows.flags.writeable else rows.copy(), points.shape[:-1]
+
+
+def check_effort(tol: float, threads: int) -> None:
+    """Check a relative tolerance and a number of threads."""
+    if not 0.0 < tol < 1.0:
+        raise InputError("tol", "must lie between 0 and 1", value=tol)
+    if not isinstance(threads, Integral) or threads < 1:
+        raise InputError("threads", "must be a whole number from 1 on", value=threads)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,14 @@ from limitsurf.kernels.project_loads import (
     contact_numbers,
     project_loads,
 )
-from limitsurf.sets.arguments import Metric, as_array, as_points, as_rows, read_metric
+from limitsurf.sets.arguments import (
+    Metric,
+    as_array,
+    as_points,
+    as_rows,
+    check_effort,
+    read_metric,
+)
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM
@@ -123,18 +130,20 @@ class ContactSum(ConvexSet):
         center: ArrayLike | None = None,
         stretch: ArrayLike | None = None,
     ) -> None:
-        places = as_array("position", position, None, 2)
-        self._radius = as_array("radius", radius, len(places))
-        if (self._radius < 0.0).any():
+        places = as_array("position", position, None, 2, copy=False)
+        m = as_array("radius", radius, len(places), copy=False)
+        if m.min(initial=0.0) < 0.0:
             raise InputError("radius", "has negative entries", remedy="friction radii are >= 0")
         self._center = as_array("center", np.zeros(3) if center is None else center, 3)
         shape = np.empty((0, 3)) if stretch is None else stretch
         self._stretch = as_array("stretch", shape, 0 if stretch is None else len(places), 3)
-        total = self._radius.sum()
-        self._centroid = self._radius @ places / total if total > 0.0 else np.zeros(2)
+        total = m.sum()
+        self._centroid: Array = m @ places / total if total > 0.0 else np.zeros(2)
         self._data = np.empty((6 if len(self._stretch) else 3, len(places)))
-        self._data[:2] = places.T - self._centroid[:, None]
-        self._data[2] = self._radius
+        np.subtract(places.T, self._centroid[:, None], out=self._data[:2])
+        self._data[2] = m
+        self._radius: Array = self._data[2]
+        self._radius.setflags(write=False)
         if len(self._stretch):
             self._data[3:] = self._stretch.T
         self._projected = 0
@@ -147,12 +156,18 @@ class ContactSum(ConvexSet):
     @property
     def position(self) -> Array:
         """Contacts (N, 2), from the reference point."""
-        return self._data[:2].T + self._centroid
+        places: Array = np.column_stack([self._data[0], self._data[1]]) + self._centroid
+        return places
 
     @property
     def radius(self) -> Array:
         """Friction radii (N,)."""
         return self._radius
+
+    @property
+    def stretch(self) -> Array | None:
+        """Entries (N, 3) of the stretches of ellipses, None for disks."""
+        return self._stretch if len(self._stretch) else None
 
     @property
     def center(self) -> Array:
@@ -224,9 +239,9 @@ class ContactSum(ConvexSet):
         """Return the same contacts seen from another point or turned, if M says that; else None."""
         turn = matrix[:2, :2] if matrix.shape == (3, 3) else np.zeros((2, 2))
         rigid = np.allclose(turn @ turn.T, np.eye(2), rtol=0.0, atol=1e-14)
-        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.linalg.det(turn):
+        if not rigid or matrix[:2, 2].any() or matrix[2, 2] != np.round(np.linalg.det(turn)):
             return None
-        shift = np.array([matrix[2] @ [0, 1, 0], -matrix[2] @ [1, 0, 0]])  # in the old axes
+        shift = matrix[2, 2] * np.array([matrix[2, 1], -matrix[2, 0]])  # in the old axes
         places = (self.position + shift) @ turn.T
         return ContactSum(places, self._radius, matrix @ self._center + offset, self._turned(turn))
 
@@ -306,8 +321,7 @@ class ContactSum(ConvexSet):
         points, shape = as_rows("p", p, 3)
         W = read_metric(metric, 3)
         tol = CONTACT_SUM if tol is None else tol
-        if not 0.0 < tol < 1.0:
-            raise InputError("tol", "must lie between 0 and 1", value=tol)
+        check_effort(tol, threads)
         starts = _NOTHING_KNOWN if start is None else self._starts(start, len(points))
         if self._by_tree(sublinear, len(points)):
             data, moments = self._tree
@@ -331,10 +345,12 @@ class ContactSum(ConvexSet):
 
     def _starts(self, start: ArrayLike | Projection, k: int) -> Array:
         """Return rows ``v, eps`` about the centroid; eps = -1 where nothing is known."""
+        known = start.twist if isinstance(start, Projection) else start
+        twists, shape = as_points("start", known, 3)
+        if len(twists) not in (1, k):
+            raise InputError("start", f"has shape {(*shape, 3)}: one for each load, or one for all")
         if isinstance(start, ContactProjection):
             return np.array(np.broadcast_to(start.answers[:, WITNESSES][:, :4], (k, 4)))
-        known = start.twist if isinstance(start, Projection) else start
-        twists, _ = as_points("start", known, 3)
         vx, vy, w = -np.broadcast_to(twists, (k, 3)).T
         cx, cy = self._centroid
         moving = np.where((vx != 0.0) | (vy != 0.0) | (w != 0.0), 0.0, COLD)

@@ -172,15 +172,23 @@ class ConvexSet(ABC):
     def _project(self, points: Array, metric: Metric) -> Rows:
         """Project through Clarabel; the bound is its duality gap, ``|x - x*|^2 <= 2 gap``."""
         form = self.conic_form()
-        solutions = [conic_projection(form, p, metric.W) for p in points]
+        solutions, solved = [], []
+        for p in points:
+            try:
+                solutions.append(conic_projection(form, p, metric.W))
+                solved.append(True)
+            except SolveFailed as failure:
+                solutions.append(failure.best)
+                solved.append(False)
         closest = np.array([s.point for s in solutions]).reshape(-1, self.dim)
         bound = np.array([np.sqrt(2 * s.gap) + s.residual for s in solutions])
         inside = np.array([s.value for s in solutions]) <= bound
+        status = np.where(inside, Status.INSIDE, Status.OUTSIDE)
         return Rows(
             closest,
             bound,
             np.array([s.iterations for s in solutions], dtype=np.int64),
-            np.where(inside, Status.INSIDE, Status.OUTSIDE).astype(np.int64),
+            np.where(solved, status, Status.FAILED).astype(np.int64),
         )
 
     def _projected_distances(self, points: Array, metric: Metric) -> Array:

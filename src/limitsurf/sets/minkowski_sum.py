@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.conic.form import ConicForm, minkowski_sum
 from limitsurf.errors import InputError
 from limitsurf.sets.arguments import Metric, as_array
+from limitsurf.sets.contact_terms import sum_of_contacts
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.polytope_sum import polytope_sum
 from limitsurf.sets.v_polytope import VPolytope
@@ -30,7 +31,8 @@ class MinkowskiSum(ConvexSet):
     Notes
     -----
     The sum of polytopes and zonotopes in up to three dimensions is made explicit when a
-    projection first needs it; other sums are projected through the conic form.
+    projection first needs it; flat ellipsoids of loads become a `ContactSum`. Other sums are
+    projected through the conic form.
 
     Examples
     --------
@@ -93,12 +95,17 @@ class MinkowskiSum(ConvexSet):
     def _supports(self, directions: Array) -> Array:
         return reduce(np.add, [s.support(directions) for s in self._sets])
 
+    @cached_property
+    def closed_form(self) -> ConvexSet | None:
+        """The same set as a polytope or a sum of contacts, if it is one."""
+        return self.explicit or sum_of_contacts(self._sets)
+
     def _project(self, points: Array, metric: Metric) -> Rows:
-        same = self.explicit
+        same = self.closed_form
         return super()._project(points, metric) if same is None else same._project(points, metric)
 
     def _distances(self, points: Array, metric: Metric) -> Array:
-        same = self.explicit
+        same = self.closed_form
         if same is None:
             return super()._distances(points, metric)
         return same._distances(points, metric)
