@@ -36,11 +36,19 @@ if TYPE_CHECKING:
     from limitsurf.contacts.contact_set import ContactSet as ContactSet
     from limitsurf.contacts.coulomb import contact_map as contact_map
     from limitsurf.contacts.coulomb import coulomb_contact as coulomb_contact
+    from limitsurf.contacts.coulomb import elliptic_contact as elliptic_contact
     from limitsurf.contacts.coulomb import polygonal_contact as polygonal_contact
     from limitsurf.contacts.friction_load import FrictionLoad as FrictionLoad
     from limitsurf.contacts.friction_load import friction_load as friction_load
     from limitsurf.contacts.lattice_contacts import LatticeContacts as LatticeContacts
+    from limitsurf.contacts.load_sharing import LoadShare as LoadShare
+    from limitsurf.contacts.load_sharing import share_load as share_load
+    from limitsurf.contacts.oscillating_contact import OscillatingContact as OscillatingContact
+    from limitsurf.contacts.pressure_patch import PressurePatch as PressurePatch
     from limitsurf.contacts.project_many import project_many as project_many
+    from limitsurf.contacts.soft_contact import SoftContact as SoftContact
+    from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
+    from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
@@ -61,6 +69,9 @@ if TYPE_CHECKING:
     from limitsurf.sets.minkowski_sum import MinkowskiSum as MinkowskiSum
     from limitsurf.sets.polynomial_set import PolynomialSet as PolynomialSet
     from limitsurf.sets.projection import Projection as Projection
+    from limitsurf.sets.sections import Section as Section
+    from limitsurf.sets.sections import limit_curve as limit_curve
+    from limitsurf.sets.sections import section as section
     from limitsurf.sets.v_polytope import VPolytope as VPolytope
     from limitsurf.sets.zonotope import Zonotope as Zonotope
 
@@ -80,29 +91,38 @@ _HOME = {
     "HPolytope": "sets.h_polytope",
     "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
+    "LoadShare": "contacts.load_sharing",
     "MinkowskiSum": "sets.minkowski_sum",
+    "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
     "PixelLattice": "actuators.pixel_lattice",
     "PolynomialSet": "sets.polynomial_set",
+    "PressurePatch": "contacts.pressure_patch",
     "Projection": "sets.projection",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
+    "Section": "sets.sections",
+    "SoftContact": "contacts.soft_contact",
     "SqueezeFunction": "planning.squeeze_function",
+    "TipDissipation": "contacts.tip_dissipation",
     "TorsionalResonator": "actuators.torsional_resonator",
     "Trajectory": "motion.trajectory",
     "TurnFunction": "planning.turn_function",
     "VPolytope": "sets.v_polytope",
     "Verification": "planning.verification",
+    "Wheel": "contacts.wheel",
     "Zonotope": "sets.zonotope",
     "activate": "actuators.realised_field",
     "carry": "actuators.carrying",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
     "direction_errors": "actuators.field_error",
+    "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
     "force_scaling": "actuators.rim_force",
     "friction_load": "contacts.friction_load",
     "headings": "actuators.pixel_lattice",
+    "limit_curve": "sets.sections",
     "load_array": "actuators.actuator_array",
     "load_error": "actuators.field_error",
     "plan_alignment": "planning.alignment",
@@ -110,6 +130,8 @@ _HOME = {
     "project_many": "contacts.project_many",
     "radial_field": "actuators.force_fields",
     "realise": "actuators.realised_field",
+    "section": "sets.sections",
+    "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",
     "skewed_squeeze_field": "actuators.force_fields",
     "squeeze_activation": "actuators.activation",

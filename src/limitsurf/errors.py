@@ -11,6 +11,7 @@ __all__ = [
     "LimitSurfError",
     "ModelError",
     "NoPlan",
+    "OutsideSupports",
     "PartTooHeavy",
     "SolveFailed",
     "TipStalled",
@@ -107,6 +108,26 @@ class TipStalled(LimitSurfError):
         self.load, self.voltage = load, voltage
         super().__init__(
             f"load: {load:.3g} N at {voltage:g} V: {reason}; raise the voltage or lower the load"
+        )
+
+
+class OutsideSupports(LimitSurfError):
+    """No supports that only push can carry a part whose centre of mass they do not surround.
+
+    Parameters
+    ----------
+    center_of_mass : (2,) float
+        Where it is [m].
+    distance : float
+        How far outside the convex hull of the supports [m].
+    """
+
+    def __init__(self, center_of_mass: tuple[float, ...], distance: float) -> None:
+        self.center_of_mass, self.distance = center_of_mass, distance
+        where = ", ".join(f"{c:.4g}" for c in center_of_mass)
+        super().__init__(
+            f"the centre of mass is outside the supports: ({where}) m lies {distance:.3g} m beyond "
+            "their convex hull; add a support there or move the part"
         )
 
 

@@ -14,8 +14,12 @@ __all__ = [
     "CONTACT_SUM",
     "FLATTEN",
     "FLAT_MOMENT",
+    "GIVEN_LOAD",
     "LINE_MARGIN",
     "REST_SPEED",
+    "SHARED_LOAD",
+    "TIP_AT_REST",
+    "TIP_WIDTH",
 ]
 
 #: Two orientations closer than this are one. Simple roots of U' are found to about 1e-15;
@@ -40,3 +44,17 @@ LINE_MARGIN: Final = 1e-9
 #: Slower than this, relative to the speed that the drive can give, is at rest. Friction lets an
 #: overdamped part approach the edge of its resting set exponentially, without ever reaching it.
 REST_SPEED: Final = 1e-5
+
+#: Distance from an oscillating tip's line within which its Hessian is smoothed, relative to the
+#: largest tip speed: well below speeds that matter, well above their rounding.
+TIP_WIDTH: Final = 1e-6
+
+#: The same if no tip moves, and no speed is known to measure by [m/s].
+TIP_AT_REST: Final = 1e-12
+
+#: Forces and moments that shared loads may leave unbalanced, relative to the weight and to the size
+#: of the support: rounding of the sums over a million contacts.
+SHARED_LOAD: Final = 1e-12
+
+#: The same for loads that a user gives: sums of numbers with nine digits.
+GIVEN_LOAD: Final = 1e-9

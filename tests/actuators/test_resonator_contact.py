@@ -5,6 +5,7 @@ import pytest
 
 from limitsurf.actuators.resonator_contact import single_tip
 from limitsurf.actuators.torsional_resonator import TorsionalResonator
+from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import AmplitudeBeyondClearance, InputError, PartTooHeavy, TipStalled
 from tests.actuators.resonator_twin import march, twin_floating
 
@@ -182,12 +183,23 @@ def test_tips_of_two_heights_are_refused():
 
 
 def test_contact_is_an_oscillating_contact():
-    oscillating = pytest.importorskip("limitsurf.contacts.oscillating_contact")
     contact = BASE.contact(PAPER, 50.0, MU, facing=0.5 * np.pi, samples=1024)
-    assert isinstance(contact, oscillating.OscillatingContact)
+    assert isinstance(contact, OscillatingContact)
     part = BASE.floating(PAPER, 50.0, MU)
-    assert contact.offset == pytest.approx([0.0, part.offset], rel=2e-2, abs=1e-6 * PAPER)
+    assert contact.offset == pytest.approx([0.0, part.offset], rel=1e-3, abs=1e-12 * PAPER)
     assert contact.radius == 0.0
+
+
+def test_a_running_tip_pushes_a_slow_part_and_drags_a_fast_one():
+    """The push ends at the drift speed; beyond the tip's own speed friction is passive."""
+    contact = BASE.contact(PAPER, 50.0, MU, samples=1024)
+    part = BASE.floating(PAPER, 50.0, MU)
+    drift = contact.drift_velocity[0]
+    assert drift * part.offset > 0.0
+    assert abs(drift) == pytest.approx(14.8e-3, rel=0.01)
+    assert contact.gradient([drift, 0.0])[0] == pytest.approx(0.0, abs=1e-6 * MU * PAPER)
+    top = part.waveforms().velocity[0].max()
+    assert contact.gradient([2 * top, 0.0])[0] == pytest.approx(MU * PAPER, rel=1e-9)
 
 
 def test_a_part_too_heavy_names_the_voltage_needed():

@@ -21,7 +21,7 @@ IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def solved_alone(position, radius, load, v=(0.1, 0.2, 0.3), eps=1.0, tol=1e-12):
-    contacts = Contacts(np.array([*position.T, radius]), 1)
+    contacts = Contacts(np.array([*position.T, radius]), 1, None)
     n = len(radius)
     setting = new_setting(n, second_moments(contacts), IDENTITY, three(load), 1.0, tol)
     best, room = new_best(), np.zeros((n, 2))

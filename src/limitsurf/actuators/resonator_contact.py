@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from limitsurf.kernels.tip_contact import ContactLaw, half_angle, release_angle,
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
+    from limitsurf.contacts.oscillating_contact import OscillatingContact
 
 __all__ = ["FloatingPart", "TipWaveforms", "contact", "floating"]
 
@@ -237,7 +237,7 @@ def contact(
     lag: float = 0.5 * np.pi,
     facing: float = 0.0,
     samples: int = 256,
-) -> Any:
+) -> OscillatingContact:
     """Return the `OscillatingContact` of a running resonator under a part.
 
     Parameters
@@ -256,10 +256,11 @@ def contact(
     InputError
         Both tips touch and have different heights: no single waveform describes them.
     """
-    home = import_module("limitsurf.contacts.oscillating_contact")  # needs its kernels only here
+    from limitsurf.contacts.oscillating_contact import OscillatingContact  # loads its kernels
+
     velocity, force = single_tip(floating(resonator, load, voltage, mu, lag), samples)
     direction = np.array([np.cos(facing), np.sin(facing)])
-    return home.OscillatingContact(mu, direction, velocity, force)
+    return OscillatingContact(mu, direction, velocity, force)
 
 
 def single_tip(part: FloatingPart, samples: int = 256) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,9 @@ from limitsurf.actuators.rim_force import plate_force, rim_force
 from limitsurf.actuators.rod_torsion import rod_stiffness
 from limitsurf.actuators.static_tilt import equilibrium, pull_in, torque
 from limitsurf.errors import InputError
+
+if TYPE_CHECKING:
+    from limitsurf.contacts.oscillating_contact import OscillatingContact
 
 __all__ = ["Side", "TorsionalResonator"]
 
@@ -261,7 +264,7 @@ class TorsionalResonator:
         lag: float = 0.5 * np.pi,
         facing: float = 0.0,
         samples: int = 256,
-    ) -> Any:
+    ) -> OscillatingContact:
         """Return the `OscillatingContact` of the tip; see `resonator_contact.contact`."""
         return contact(self, load, voltage, mu, lag=lag, facing=facing, samples=samples)
 

@@ -14,7 +14,7 @@ from limitsurf.sets.arguments import as_array
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.sets.v_polytope import VPolytope
 
-__all__ = ["contact_map", "coulomb_contact", "polygonal_contact"]
+__all__ = ["contact_map", "coulomb_contact", "elliptic_contact", "polygonal_contact"]
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,34 @@ def coulomb_contact(position: ArrayLike, radius: float) -> Ellipsoid:
     array(2.)
     """
     return Ellipsoid(np.zeros(3), _checked(radius) * contact_map(position))
+
+
+def elliptic_contact(
+    position: ArrayLike, half_axes: ArrayLike, direction: ArrayLike = (1.0, 0.0)
+) -> Ellipsoid:
+    """Return the limit surface of a contact whose friction depends on the direction.
+
+    Parameters
+    ----------
+    position : (2,) float
+        Contact [m].
+    half_axes : (2,) float
+        Largest forces along and across `direction` [N].
+    direction : (2,) float
+        A direction of symmetry.
+
+    Examples
+    --------
+    >>> elliptic_contact([0.0, 0.0], [1.0, 3.0], [0.0, 1.0]).support([[1, 0, 0], [0, 1, 0]])
+    array([3., 1.])
+    """
+    along, across = (_checked(float(a), "half_axes") for a in as_array("half_axes", half_axes, 2))
+    e = as_array("direction", direction, 2)
+    if not e.any():
+        raise InputError("direction", "is zero", remedy="give a direction of symmetry")
+    e = e / np.hypot(*e)
+    forces = np.array([[along * e[0], -across * e[1]], [along * e[1], across * e[0]]])
+    return Ellipsoid(np.zeros(3), contact_map(position) @ forces)
 
 
 def polygonal_contact(
@@ -71,7 +99,7 @@ def polygonal_contact(
     return VPolytope(forces @ G.T), float(error * np.linalg.norm(G, 2))
 
 
-def _checked(radius: float) -> float:
+def _checked(radius: float, name: str = "radius") -> float:
     if not (np.isfinite(radius) and radius >= 0.0):
-        raise InputError("radius", "must be at least 0", value=radius)
+        raise InputError(name, "must be at least 0", value=radius)
     return float(radius)

@@ -153,6 +153,9 @@ def _with_dissipation(
     if not left <= 1e-6 * size:
         raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     friction = projection.point
+    left, *parts = (float(np.sqrt(x @ np.linalg.solve(Q, x))) for x in (rest, F, rate, friction))
+    if left > 1e-6 * sum(parts):
+        raise SolveFailed("friction_load: the dissipation is not smooth and convex", best=v)
     sticks = np.asarray(not v.any())
     net = F + friction + rate
     return FrictionLoad(friction, net, sticks, projection, rate)
