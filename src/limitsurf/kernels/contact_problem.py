@@ -168,7 +168,7 @@ def _rounding(n: int, moments: Symmetric, C: Rows, c: Vector) -> float:
         square += (abs(row[0] * c[0]) + abs(row[1] * c[1]) + abs(row[2] * c[2])) ** 2
         contacts2 += max(form(moments, row), 0.0)
     reach = 0.5 * (moments[0] + moments[2])
-    return 4.0 * _EPS * math.sqrt(square) + sum_error(n) * math.sqrt(reach * contacts2)
+    return 16.0 * _EPS * math.sqrt(square) + sum_error(n) * math.sqrt(reach * contacts2)
 
 
 @compiled
