@@ -3,12 +3,18 @@ import tomllib
 import pytest
 
 from limitsurf.actuators.actuator_array import ArrayModel
+from limitsurf.actuators.resonator_model import ResonatorModel
 from limitsurf.actuators.resonator_pixel import PixelModel, load_pixel
 from limitsurf.errors import ModelError
 from limitsurf.geometry.outline_files import PartModel
 from limitsurf.modelfiles import describe_models, find_model, list_models, load_model, models_folder
 
-KINDS = {"parts": PartModel, "arrays": ArrayModel, "actuators": PixelModel}
+KINDS = {
+    "parts": PartModel,
+    "arrays": ArrayModel,
+    "actuators": PixelModel,
+    "resonators": ResonatorModel,
+}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -32,6 +38,10 @@ def numbers_without_origin(table, path=""):
                 yield from numbers_without_origin(value, where)
         elif isinstance(value, int | float) and not isinstance(value, bool):
             yield where
+
+
+def test_every_kind_of_model_has_a_schema():
+    assert {p.name for p in models_folder().iterdir() if p.is_dir()} == set(KINDS)
 
 
 def test_every_number_has_a_source_or_is_assumed():

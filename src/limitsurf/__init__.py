@@ -14,6 +14,25 @@ if TYPE_CHECKING:
     from limitsurf.actuators.activation import squeeze_activation as squeeze_activation
     from limitsurf.actuators.actuator_array import ActuatorArray as ActuatorArray
     from limitsurf.actuators.actuator_array import load_array as load_array
+    from limitsurf.actuators.carrying import Carried as Carried
+    from limitsurf.actuators.carrying import carry as carry
+    from limitsurf.actuators.field_error import direction_errors as direction_errors
+    from limitsurf.actuators.field_error import load_error as load_error
+    from limitsurf.actuators.force_fields import elliptic_field as elliptic_field
+    from limitsurf.actuators.force_fields import radial_field as radial_field
+    from limitsurf.actuators.force_fields import skewed_squeeze_field as skewed_squeeze_field
+    from limitsurf.actuators.force_fields import squeeze_field as squeeze_field
+    from limitsurf.actuators.force_fields import uniform_field as uniform_field
+    from limitsurf.actuators.pixel_lattice import PixelLattice as PixelLattice
+    from limitsurf.actuators.pixel_lattice import headings as headings
+    from limitsurf.actuators.realised_field import RealisedField as RealisedField
+    from limitsurf.actuators.realised_field import activate as activate
+    from limitsurf.actuators.realised_field import realise as realise
+    from limitsurf.actuators.resonator_contact import FloatingPart as FloatingPart
+    from limitsurf.actuators.resonator_sweep import ResonatorSweep as ResonatorSweep
+    from limitsurf.actuators.resonator_sweep import sweep_resonators as sweep_resonators
+    from limitsurf.actuators.rim_force import force_scaling as force_scaling
+    from limitsurf.actuators.torsional_resonator import TorsionalResonator as TorsionalResonator
     from limitsurf.contacts.contact_set import ContactSet as ContactSet
     from limitsurf.contacts.coulomb import contact_map as contact_map
     from limitsurf.contacts.coulomb import coulomb_contact as coulomb_contact
@@ -62,10 +81,12 @@ _HOME = {
     "Activation": "actuators.activation",
     "ActuatorArray": "actuators.actuator_array",
     "AlignmentPlan": "planning.alignment",
+    "Carried": "actuators.carrying",
     "ContactSet": "contacts.contact_set",
     "ContactSum": "sets.contact_sum",
     "ConvexSet": "sets.convex_set",
     "Ellipsoid": "sets.ellipsoid",
+    "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
     "HPolytope": "sets.h_polytope",
     "LatticeContacts": "contacts.lattice_contacts",
@@ -74,35 +95,52 @@ _HOME = {
     "MinkowskiSum": "sets.minkowski_sum",
     "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
+    "PixelLattice": "actuators.pixel_lattice",
     "PolynomialSet": "sets.polynomial_set",
     "PressurePatch": "contacts.pressure_patch",
     "Projection": "sets.projection",
+    "RealisedField": "actuators.realised_field",
+    "ResonatorSweep": "actuators.resonator_sweep",
     "Section": "sets.sections",
     "SoftContact": "contacts.soft_contact",
     "SqueezeFunction": "planning.squeeze_function",
     "TipDissipation": "contacts.tip_dissipation",
+    "TorsionalResonator": "actuators.torsional_resonator",
     "Trajectory": "motion.trajectory",
     "TurnFunction": "planning.turn_function",
     "VPolytope": "sets.v_polytope",
     "Verification": "planning.verification",
     "Wheel": "contacts.wheel",
     "Zonotope": "sets.zonotope",
+    "activate": "actuators.realised_field",
+    "carry": "actuators.carrying",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
+    "direction_errors": "actuators.field_error",
     "elliptic_contact": "contacts.coulomb",
+    "elliptic_field": "actuators.force_fields",
+    "force_scaling": "actuators.rim_force",
     "friction_load": "contacts.friction_load",
+    "headings": "actuators.pixel_lattice",
     "limit_curve": "sets.sections",
     "load_array": "actuators.actuator_array",
+    "load_error": "actuators.field_error",
     "plan_alignment": "planning.alignment",
     "polygonal_contact": "contacts.coulomb",
     "project_many": "contacts.project_many",
+    "radial_field": "actuators.force_fields",
+    "realise": "actuators.realised_field",
     "section": "sets.sections",
     "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",
+    "skewed_squeeze_field": "actuators.force_fields",
     "squeeze_activation": "actuators.activation",
+    "squeeze_field": "actuators.force_fields",
     "squeeze_function": "planning.squeeze_function",
+    "sweep_resonators": "actuators.resonator_sweep",
     "transport": "sets.linear_image",
     "turn_function": "planning.turn_function",
+    "uniform_field": "actuators.force_fields",
     "verify_alignment": "planning.verification",
 }
 _MODULES = ("errors", "plot", "units")

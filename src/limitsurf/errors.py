@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = [
+    "AmplitudeBeyondClearance",
+    "BeyondPullIn",
     "InputError",
     "LimitSurfError",
     "ModelError",
@@ -12,6 +14,7 @@ __all__ = [
     "OutsideSupports",
     "PartTooHeavy",
     "SolveFailed",
+    "TipStalled",
 ]
 
 
@@ -72,6 +75,39 @@ class PartTooHeavy(LimitSurfError):
         super().__init__(
             f"voltage: {voltage:g} V lifts {vertical_force:.3g} N per active tip, but the part "
             f"puts {weight_per_tip:.3g} N on each; {lifting_voltage:.3g} V would lift it"
+        )
+
+
+class BeyondPullIn(LimitSurfError):
+    """A constant voltage at or above `pull_in` [V]: the grid snaps to its electrode."""
+
+    def __init__(self, voltage: float, pull_in: float) -> None:
+        self.voltage, self.pull_in = voltage, pull_in
+        super().__init__(
+            f"voltage: {voltage:g} V pulls the grid onto its electrode, which happens at "
+            f"{pull_in:.4g} V; stay below"
+        )
+
+
+class AmplitudeBeyondClearance(LimitSurfError):
+    """The edge would swing as far as its electrode, `clearance` [m] away."""
+
+    def __init__(self, voltage: float, amplitude: float, clearance: float) -> None:
+        self.voltage, self.amplitude, self.clearance = voltage, amplitude, clearance
+        super().__init__(
+            f"voltage: at {voltage:g} V the edge would swing {1e6 * amplitude:.3g} um, at or "
+            f"beyond the clearance of {1e6 * clearance:.3g} um; lower the voltage or the "
+            "quality factor"
+        )
+
+
+class TipStalled(LimitSurfError):
+    """Under `load` [N] the resonator at `voltage` [V] cannot keep swinging free of the part."""
+
+    def __init__(self, load: float, voltage: float, reason: str) -> None:
+        self.load, self.voltage = load, voltage
+        super().__init__(
+            f"load: {load:.3g} N at {voltage:g} V: {reason}; raise the voltage or lower the load"
         )
 
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import CoreSchema, core_schema
 
 from limitsurf.errors import InputError, ModelError
 from limitsurf.units import parse_quantity
@@ -25,6 +26,7 @@ __all__ = [
     "list_models",
     "load_model",
     "number",
+    "read_toml",
 ]
 
 
@@ -56,10 +58,40 @@ class Sourced:
 M = TypeVar("M", bound=Model)
 
 
-def number(unit: str, *, above: float | None = None, at_least: float | None = None) -> Any:
-    """Return a validator for a sourced number in `unit`, optionally bounded from below."""
+@dataclass(frozen=True)
+class SourcedNumber:
+    """Reads a sourced number in `unit`, optionally bounded from below; describes itself as JSON."""
 
-    def read(raw: Any) -> Sourced:
+    unit: str
+    above: float | None = None
+    at_least: float | None = None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        """Validate by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Return a table with a value and exactly one of source, assumed."""
+        text = {"type": "string", "description": f"quantity in units of {self.unit}"}
+        plain: dict[str, Any] = {"type": "number"}
+        if self.above is not None:
+            plain["exclusiveMinimum"] = self.above
+        if self.at_least is not None:
+            plain["minimum"] = self.at_least
+        return {
+            "type": "object",
+            "properties": {
+                "value": text if self.unit else {"anyOf": [plain, {"type": "string"}]},
+                "source": {"type": "string", "description": "where the value comes from"},
+                "assumed": {"type": "string", "description": "why it was assumed"},
+            },
+            "required": ["value"],
+            "oneOf": [{"required": ["source"]}, {"required": ["assumed"]}],
+            "additionalProperties": False,
+        }
+
+    def read(self, raw: Any) -> Sourced:
+        """Return the number in SI units with its origin."""
         if not isinstance(raw, Mapping):
             raise ValueError(
                 "write it as { value = ..., source = ... } or { value = ..., assumed = ... }"
@@ -71,16 +103,24 @@ def number(unit: str, *, above: float | None = None, at_least: float | None = No
             )
         if "value" not in raw or ("source" in raw) == ("assumed" in raw):
             raise ValueError("needs value and exactly one of source, assumed")
-        if unit and not isinstance(raw["value"], str):
-            raise ValueError(f'value needs a unit, such as "{raw["value"]} {unit}"')
-        value = parse_quantity(raw["value"], unit, name="value")
-        if above is not None and not value > above:
-            raise ValueError(f"must be greater than {above:g} (got {raw['value']!r})")
-        if at_least is not None and not value >= at_least:
-            raise ValueError(f"must be at least {at_least:g} (got {raw['value']!r})")
-        return Sourced(value, str(raw.get("source", raw.get("assumed"))), "assumed" in raw)
+        if self.unit and not isinstance(raw["value"], str):
+            raise ValueError(f'value needs a unit, such as "{raw["value"]} {self.unit}"')
+        return self._bounded(raw, parse_quantity(raw["value"], self.unit, name="value"))
 
-    return PlainValidator(read)
+    def _bounded(self, raw: Mapping[str, Any], value: float) -> Sourced:
+        note = raw.get("source", raw.get("assumed"))
+        if not isinstance(note, str) or not note.strip():
+            raise ValueError("source or assumed must say something")
+        if self.above is not None and not value > self.above:
+            raise ValueError(f"must be greater than {self.above:g} (got {raw['value']!r})")
+        if self.at_least is not None and not value >= self.at_least:
+            raise ValueError(f"must be at least {self.at_least:g} (got {raw['value']!r})")
+        return Sourced(value, note, "assumed" in raw)
+
+
+def number(unit: str, *, above: float | None = None, at_least: float | None = None) -> Any:
+    """Return the annotation of a sourced number in `unit`, optionally bounded from below."""
+    return SourcedNumber(unit, above, at_least)
 
 
 def models_folder() -> Path:
@@ -91,7 +131,7 @@ def models_folder() -> Path:
 
 
 def list_models(kind: str) -> list[str]:
-    """Return the names of the shipped models of one kind: actuators, arrays or parts."""
+    """Return the names of the shipped models of one kind, such as parts or arrays."""
     return sorted(path.stem for path in (models_folder() / kind).glob("*.toml"))
 
 
@@ -125,6 +165,22 @@ def find_model(kind: str, name_or_path: str | Path) -> Path:
     )
 
 
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read any TOML file.
+
+    Raises
+    ------
+    ModelError
+        Unreadable file or broken TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ModelError(path, "", f"cannot be read: {error}", remedy="check the path") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ModelError(path, "", f"is no TOML: {error}", remedy="mend that line") from error
+
+
 def load_model(path: Path, schema: type[M]) -> M:
     """Read and check one TOML file against its schema.
 
@@ -133,12 +189,7 @@ def load_model(path: Path, schema: type[M]) -> M:
     ModelError
         Unreadable file, broken TOML, or the first field that does not fit.
     """
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ModelError(path, "", f"cannot be read: {error}", remedy="check the path") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ModelError(path, "", f"is no TOML: {error}", remedy="mend that line") from error
+    data = read_toml(path)
     try:
         return schema.model_validate(data)
     except ValidationError as error:

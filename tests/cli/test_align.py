@@ -70,6 +70,17 @@ def test_the_report_is_one_page_that_loads_nothing(finished):
     assert "critical angle" in page
 
 
+def test_the_push_is_computed_or_the_models(capsys):
+    table = {}
+    for push in ("computed", "model"):
+        code, table[push], _ = run(
+            capsys, "align", "paper_t", "--array", "resonator64", "--samples", "2", "--push", push
+        )
+        assert code == 0
+    assert "0.157 of friction" in table["computed"]
+    assert "0.100 of friction" in table["model"]
+
+
 def test_the_table(capsys):
     code, out, err = run(
         capsys, "align", "paper-t", "--array", "resonator64", "--samples", "3", "--seed", "1"

@@ -56,7 +56,8 @@ def squeeze_activation(
 ) -> Activation:
     r"""Return the activation that squeezes towards a line through the array's centre.
 
-    One actuator runs in each pixel, in one of the two axis directions towards the line.
+    One actuator runs in each pixel, in one of the two axis directions towards the line; none if
+    that one is dead.
 
     Parameters
     ----------
@@ -81,8 +82,8 @@ def squeeze_activation(
     if method not in ("dither", "nearest"):
         raise InputError("method", "is unknown", value=method, remedy="use dither or nearest")
     wanted = _pixel_directions(array, line, method).repeat(2, axis=0).repeat(2, axis=1)
-    active: NDArray[np.bool_] = np.sum(wanted * array.site_directions, axis=-1) > 0.5
-    return Activation(array, active, float(line))
+    active: NDArray[np.bool_] = np.sum(wanted * array.nominal_directions, axis=-1) > 0.5
+    return Activation(array, active & array.alive, float(line))
 
 
 def _pixel_directions(array: ActuatorArray, line: float, method: Method) -> NDArray[np.float64]:

@@ -8,9 +8,12 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import g
 
 from limitsurf.actuators.resonator_pixel import ResonatorPixel, load_pixel
+from limitsurf.actuators.spread import SiteSpread, draw_spread
 from limitsurf.errors import InputError, ModelError
+from limitsurf.geometry.part import Part
 from limitsurf.modelfiles import Model, Sourced, find_model, load_model, number
 from limitsurf.units import parse_quantity
 
@@ -33,6 +36,8 @@ class ActuatorArray:
         Viscosity [Pa s] and height [m] of the air between part and array, for the drag.
     name : str
         For reports.
+    spread : SiteSpread, optional
+        Deviations of the actuators, arrays (R, C).
     """
 
     pixel: ResonatorPixel
@@ -42,6 +47,7 @@ class ActuatorArray:
     air_viscosity: float
     air_film: float
     name: str = "array"
+    spread: SiteSpread | None = None
 
     @property
     def width(self) -> float:
@@ -59,9 +65,21 @@ class ActuatorArray:
         return self.pixel.pitch / 2
 
     @property
-    def site_directions(self) -> NDArray[np.float64]:
-        """Unit vector of the push of every actuator, (R, C, 2)."""
+    def nominal_directions(self) -> NDArray[np.float64]:
+        """Unit vector of the push of every actuator, had they no spread, (R, C, 2)."""
         return np.tile(self.pixel.directions, (self.rows, self.columns, 1))
+
+    @property
+    def site_directions(self) -> NDArray[np.float64]:
+        """Push of every actuator over the nominal push, (R, C, 2): unit vectors without spread."""
+        nominal = self.nominal_directions
+        return nominal if self.spread is None else self.spread.pushes(nominal)
+
+    @property
+    def alive(self) -> NDArray[np.bool_]:
+        """Whether an actuator can run, (R, C)."""
+        shape = (2 * self.rows, 2 * self.columns)
+        return np.ones(shape, bool) if self.spread is None else ~self.spread.dead
 
     @property
     def first_site(self) -> tuple[float, float]:
@@ -87,6 +105,27 @@ class ActuatorArray:
                 remedy="the model says why",
             )
         return replace(self, voltage=volts)
+
+    def with_spread(
+        self, *, strength: float = 0.0, direction: float = 0.0, dead: float = 0.0, seed: int = 0
+    ) -> ActuatorArray:
+        """Return the array with actuators that differ; see `draw_spread`."""
+        shape = (2 * self.rows, 2 * self.columns)
+        drawn = draw_spread(shape, strength=strength, direction=direction, dead=dead, seed=seed)
+        return replace(self, spread=drawn)
+
+    def running_under(self, part: Part) -> ActuatorArray:
+        """Return the array with the push of its tips computed for a part at this voltage.
+
+        One active tip a pixel carries the part; see `ResonatorPixel.running`.
+
+        Raises
+        ------
+        PartTooHeavy, TipStalled, AmplitudeBeyondClearance
+            The resonators cannot run so; see `TorsionalResonator.floating`.
+        """
+        load = part.mass / part.area * g * self.pixel.pitch**2
+        return replace(self, pixel=self.pixel.running(load, self.voltage))
 
     def __repr__(self) -> str:
         """Return pixels, size and voltage."""

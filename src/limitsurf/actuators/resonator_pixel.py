@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.constants import epsilon_0
 
+from limitsurf.actuators.torsional_resonator import TorsionalResonator
 from limitsurf.errors import ModelError
 from limitsurf.modelfiles import Model, Sourced, find_model, load_model, number
 
@@ -28,8 +28,8 @@ class ResonatorPixel:
         Unit vector of the push of each actuator; rows upwards, columns to the right.
     pitch : float
         Side of the pixel [m].
-    grid_width, clearance, effective_width : float
-        Side of a resonator's grid, gap to the electrode, and width of the rim that acts [m].
+    resonator : TorsionalResonator
+        Each of the actuators, turned so that it pushes in its direction.
     max_voltage : float
         Largest voltage the model stands for [V].
     tip_width : float
@@ -42,9 +42,7 @@ class ResonatorPixel:
 
     directions: NDArray[np.float64]
     pitch: float
-    grid_width: float
-    clearance: float
-    effective_width: float
+    resonator: TorsionalResonator
     max_voltage: float
     tip_width: float
     friction: float
@@ -52,21 +50,39 @@ class ResonatorPixel:
     residual_fraction: float
 
     def vertical_force(self, voltage: float) -> float:
-        """Return what one actuator lifts [N]: ``eps0 perimeter w_eff V^2 / (2 h^2)``.
-
-        The force comes from the rim of the grid (paper, section 5; the effective width is
-        calibrated on its 2.8e-7 N at 50 V).
-        """
-        return self._force_per_square_volt * voltage**2
+        """Return what one actuator lifts [N]; see `TorsionalResonator.vertical_force`."""
+        return float(self.resonator.vertical_force(voltage))
 
     def lifting_voltage(self, force: float) -> float:
         """Return the voltage [V] at which one actuator lifts `force` [N]."""
-        return float(np.sqrt(force / self._force_per_square_volt))
+        return float(self.resonator.lifting_voltage(force))
 
-    @property
-    def _force_per_square_volt(self) -> float:
-        rim = 4 * self.grid_width * self.effective_width
-        return float(epsilon_0 * rim / (2 * self.clearance**2))
+    def running(self, load: float, voltage: float) -> ResonatorPixel:
+        """Return the pixel with the push computed from the resonator, not the model's guess.
+
+        Parameters
+        ----------
+        load : float
+            Weight on each running tip [N].
+        voltage : float
+            Peak voltage [V].
+
+        Notes
+        -----
+        Where the free edge would swing by more than half of the clearance at resonance, the drive
+        leads the motion by less, see `resonator_motion.lag_for`.
+
+        The tip of a resonator is never at rest, so nothing is left of its friction disk.
+
+        Examples
+        --------
+        >>> pixel = load_pixel("resonator1994")
+        >>> (pixel.offset_fraction, round(pixel.running(3.1e-8, 50.0).offset_fraction, 2))
+        (0.1, 0.16)
+        """
+        lag = self.resonator.lag_for(voltage, 0.5 * self.resonator.clearance)
+        part = self.resonator.floating(load, voltage, self.friction, lag)
+        return replace(self, offset_fraction=abs(part.offset_fraction), residual_fraction=0.0)
 
     def __repr__(self) -> str:
         """Return the pitch and the number of actuators."""
@@ -77,11 +93,9 @@ class PixelModel(Model):
     """Schema of a pixel model file."""
 
     description: str
+    resonator: str
     directions: list[list[Literal["+x", "-x", "+y", "-y"]]]
     pixel_pitch: Annotated[Sourced, number("m", above=0.0)]
-    grid_width: Annotated[Sourced, number("m", above=0.0)]
-    clearance: Annotated[Sourced, number("m", above=0.0)]
-    effective_width: Annotated[Sourced, number("m", above=0.0)]
     max_voltage: Annotated[Sourced, number("V", above=0.0)]
     tip_width: Annotated[Sourced, number("m", at_least=0.0)]
     friction: Annotated[Sourced, number("", at_least=0.0)]
@@ -103,12 +117,11 @@ def load_pixel(name_or_path: str | Path) -> ResonatorPixel:
         len(row) != 2 for row in model.directions
     ):
         raise ModelError(path, "directions", "must be 2 x 2, each direction once")
+    beside = path.parent / model.resonator
     return ResonatorPixel(
         directions=np.array([[_AXES[name] for name in row] for row in model.directions]),
         pitch=model.pixel_pitch.value,
-        grid_width=model.grid_width.value,
-        clearance=model.clearance.value,
-        effective_width=model.effective_width.value,
+        resonator=TorsionalResonator.from_model(beside if beside.is_file() else model.resonator),
         max_voltage=model.max_voltage.value,
         tip_width=model.tip_width.value,
         friction=model.friction.value,

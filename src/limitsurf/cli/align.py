@@ -54,6 +54,10 @@ def align(
     min_margin: Annotated[
         str, typer.Option(help="Least error of a line that every step tolerates.")
     ] = "0 deg",
+    push: Annotated[
+        Literal["computed", "model"],
+        typer.Option(help="Push of a tip: from its resonator, or as the actuator model says."),
+    ] = "computed",
 ) -> None:
     """Plan the sensorless alignment of PART and verify it by simulation on ARRAY."""
     from limitsurf.actuators.actuator_array import load_array
@@ -73,6 +77,8 @@ def align(
     )
     margin = parse_quantity(min_margin, "rad", name="min_margin")
     plan = plan_alignment(the_part, min_margin=margin)
+    if push == "computed":
+        the_array = the_array.running_under(the_part)
     verification = verify_alignment(
         plan,
         the_part,

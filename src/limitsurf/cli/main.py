@@ -10,6 +10,7 @@ import typer
 
 from limitsurf import __version__
 from limitsurf.cli.align import align
+from limitsurf.cli.models import models
 from limitsurf.cli.warm_up import warm_up
 from limitsurf.errors import LimitSurfError
 
@@ -23,6 +24,7 @@ app = typer.Typer(
 )
 app.command()(align)
 app.command()(warm_up)
+app.add_typer(models, name="models")
 
 
 def _show_version(wanted: bool) -> None:
@@ -39,17 +41,6 @@ def _options(
     ] = False,
 ) -> None:
     """Contact mechanics and sensorless alignment on actuator arrays."""
-
-
-@app.command()
-def models() -> None:
-    """List the models that come with limitsurf."""
-    from limitsurf.modelfiles import describe_models
-
-    for kind in ("parts", "arrays", "actuators"):
-        typer.echo(f"{kind}:")
-        for name, description in describe_models(kind).items():
-            typer.echo(f"  {name:16} {description}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

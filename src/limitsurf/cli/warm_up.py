@@ -47,8 +47,23 @@ def _contacts() -> None:
     ls.plan_alignment(part)
 
 
+def _resonators() -> None:
+    """Float a part on a resonator once."""
+    from limitsurf.actuators.resonator_sweep import sweep_resonators
+    from limitsurf.actuators.torsional_resonator import TorsionalResonator
+
+    resonator = TorsionalResonator.from_model("resonator1994")
+    resonator.floating(3e-8, 50.0, 0.3).waveforms(16)
+    resonator.static_tilt(50.0)
+    sweep_resonators(resonator, 3e-8, 50.0, 0.3)
+
+
 #: What is compiled side by side: groups that share few kernels.
-GROUPS: dict[str, Callable[[], None]] = {"convex sets": _sets, "contacts and motion": _contacts}
+GROUPS: dict[str, Callable[[], None]] = {
+    "convex sets": _sets,
+    "contacts and motion": _contacts,
+    "resonators": _resonators,
+}
 
 
 def _timed(name: str) -> tuple[str, float]:

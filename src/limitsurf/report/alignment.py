@@ -41,6 +41,7 @@ def summary_rows(turn: TurnFunction, verification: Verification) -> Rows:
             f"{np.degrees(error):.2f} deg; no equilibrium is left beyond the critical angle "
             f"{np.degrees(turn.critical_angle):.2f} deg",
         ),
+        ("push of a tip", f"{array.pixel.offset_fraction:.3f} of friction times load"),
         ("motion", f"{verification.mode}, {verification.samples} starts, seed {verification.seed}"),
         (
             "success rate",
