@@ -94,7 +94,7 @@ def test_exact_sums_leave_out_the_kink(rng, n):
                 continue
             tau = 1e-2 * abs(v[2])
             table = new_table(len(x))
-            kink, _ = exact_sums(contacts, three(v), tau, True, table)
+            kink, _, _ = exact_sums(contacts, three(v), tau, 1.0, table)
             speeds = np.hypot(v[0] - v[2] * y, v[1] + v[2] * x)
             out = ()
             if kink.contact >= 0:
@@ -116,7 +116,7 @@ def test_slow_contacts_without_friction_are_no_kink():
     """Only a contact of radius zero is slow: the sums are complete, and nothing is left out."""
     contacts = contacts_of([0.0, 1.0, -2.0], [0.0, 0.5, 0.3], [0.0, 1.0, 2.0])
     table = new_table(3)
-    kink, _ = exact_sums(contacts, (0.0, 0.0, 1.0), 0.1, True, table)
+    kink, _, _ = exact_sums(contacts, (0.0, 0.0, 1.0), 0.1, 1.0, table)
     assert kink.contact == -1
     assert kink.mass == 0.0
     agree(contacts, table, [0.0, 0.0, 1.0], 0.0)
@@ -127,13 +127,13 @@ def test_one_block_is_enough_to_tell_the_kink(rng):
     contacts = contacts_of(x, y, np.ones(len(x)))
     j = 3 * BLOCK + 17
     v = (y[j], -x[j], 1.0)
-    assert exact_sums(contacts, v, 1e-9, True, new_table(len(x)))[0].contact == j
+    assert exact_sums(contacts, v, 1e-9, 1.0, new_table(len(x)))[0].contact == j
 
 
 def test_coincident_ellipses_are_one_kink_only_if_alike():
     stretch = np.array([[1.0, 0.0, 0.5], [0.5, 0.0, 1.0], [1.0, 0.0, 0.5], [1.0, 0.0, 1.0]]).T
     contacts = contacts_of([0.0, 0.0, 0.0, 1.0], [0.0] * 4, [1.0, 2.0, 4.0, 1.0], stretch)
-    kink, _ = exact_sums(contacts, (1e-6, 0.0, 1.0), 1e-3, True, new_table(4))
+    kink, _, _ = exact_sums(contacts, (1e-6, 0.0, 1.0), 1e-3, 1.0, new_table(4))
     assert kink.contact == 1
     assert kink.mass == 2.0
     assert kink.stretch == (0.5, 0.0, 1.0)
@@ -146,7 +146,7 @@ def test_threads_give_the_same_bits(rng):
     m, v = rng.uniform(0.5, 1.0, n), three(rng.normal(size=3))
     for sums in (
         lambda c, t: smoothed_sums(c, v, 0.1, t),
-        lambda c, t: exact_sums(c, v, 0.01, True, t),
+        lambda c, t: exact_sums(c, v, 0.01, 1.0, t),
     ):
         tables = new_table(n), new_table(n)
         for threads, table in enumerate(tables, 1):
@@ -177,7 +177,7 @@ def test_no_contacts():
     contacts, table = contacts_of([], [], []), new_table(0)
     smoothed_sums(contacts, (1.0, 2.0, 3.0), 0.1, table)
     assert not table.any()
-    assert exact_sums(contacts, (1.0, 2.0, 3.0), 0.1, True, table)[0].contact == -1
+    assert exact_sums(contacts, (1.0, 2.0, 3.0), 0.1, 1.0, table)[0].contact == -1
 
 
 def test_sums_without_the_hessian_are_the_same_sums(rng):
@@ -185,8 +185,8 @@ def test_sums_without_the_hessian_are_the_same_sums(rng):
     m = rng.uniform(0.5, 1.0, 3000)
     contacts, full, light = contacts_of(x, y, m), new_table(3000), new_table(3000)
     for tau in (0.0, 0.1):
-        kink = exact_sums(contacts, (0.3, -0.2, 1.0), tau, True, full)
-        assert exact_sums(contacts, (0.3, -0.2, 1.0), tau, False, light) == kink
+        kink = exact_sums(contacts, (0.3, -0.2, 1.0), tau, 1.0, full)
+        assert exact_sums(contacts, (0.3, -0.2, 1.0), tau, 0.0, light) == kink
         assert light[-1, :4] == pytest.approx(full[-1, :4], rel=1e-13, abs=1e-12)
 
 
@@ -197,8 +197,8 @@ def test_sums_by_moments_are_the_sums_within_their_error(rng):
     data, table = np.stack([moments.x, moments.y, moments.m]), new_table(0)
     direct, v = new_table(20000), (0.3, -0.2, 1.0)
     for tau in (0.0, 0.05):
-        kink, error = exact_sums(Contacts(data, 1, Tree(moments, 1e-9)), v, tau, True, table)
-        same, _ = exact_sums(Contacts(data, 1, None), v, tau, True, direct)
+        kink, error, _ = exact_sums(Contacts(data, 1, Tree(moments, 1e-9)), v, tau, 0.0, table)
+        same, _, _ = exact_sums(Contacts(data, 1, None), v, tau, 1.0, direct)
         assert kink.contact == same.contact
         assert 0.0 < error < 1e-7
         assert np.linalg.norm(table[-1, 1:4] - direct[-1, 1:4]) <= error + 1e-13

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,7 @@ __all__ = [
     "Contacts",
     "Kink",
     "Tree",
+    "always_curved",
     "contact_columns",
     "contact_velocity",
     "exact_sums",
@@ -288,6 +290,12 @@ def _sum_blocks(
         _sum_block(contacts, q, v, eps2, tau2, curved, table[q])
 
 
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    """Return threads that stay: starting them takes as long as a tenth of a pass."""
+    return ThreadPoolExecutor(threads)
+
+
 def _sum_side_by_side(
     data: Floats, at: tuple[float, float, float, float, float, bool], table: Floats, threads: int
 ) -> None:
@@ -296,11 +304,11 @@ def _sum_side_by_side(
     ends = [k * blocks // threads for k in range(threads + 1)]
     vx, vy, w, eps2, tau2, curved = at
     same = Contacts(data, 1, None), (vx, vy, w), eps2, tau2, curved, table
-    with ThreadPoolExecutor(threads) as pool:
-        rest = [pool.submit(_sum_blocks, *same, *ends[k : k + 2]) for k in range(1, threads)]
-        _sum_blocks(*same, 0, ends[1])
-        for future in rest:
-            future.result()
+    pool = _pool(threads - 1)
+    rest = [pool.submit(_sum_blocks, *same, *ends[k : k + 2]) for k in range(1, threads)]
+    _sum_blocks(*same, 0, ends[1])
+    for future in rest:
+        future.result()
 
 
 @compiled
@@ -330,50 +338,58 @@ def smoothed_sums(contacts: Contacts, v: Vector, eps: float, table: Floats) -> N
 
 @compiled
 def exact_sums(
-    contacts: Contacts, v: Vector, tau: float, curved: bool, table: Floats
-) -> tuple[Kink, float]:
+    contacts: Contacts, v: Vector, tau: float, blur: float, table: Floats
+) -> tuple[Kink, float, float]:
     """Fill the last row of the table with the sums at eps = 0, without the kink.
 
-    Return the kink, and a bound on the error of the gradient beside that of adding up. The Hessian
-    is left out unless the sums are to be `curved`.
+    Return the kink, and bounds on the errors of the gradient and of h beside those of adding up.
+    `blur` is the error allowed, per unit of friction, where the sums are not the last; with
+    blur = 0 they may be, and direct ones leave out the Hessian.
     """
-    return _exact_sums(contacts, contacts.tree, v, tau, curved, table)
+    return _exact_sums(contacts, contacts.tree, v, tau, blur, table)
 
 
 @compiled
 def _exact_sums(
-    contacts: Contacts, tree: Tree | None, v: Vector, tau: float, curved: bool, table: Floats
-) -> tuple[Kink, float]:
+    contacts: Contacts, tree: Tree | None, v: Vector, tau: float, blur: float, table: Floats
+) -> tuple[Kink, float, float]:
     if tree is not None:  # decided when compiled
-        return _sums_by_tree(contacts, tree, v, tau, table[table.shape[0] - 1])
-    _sum_all(contacts, v, 0.0, tau * tau, curved, table)
+        tol = max(tree.tol, blur)
+        return _sums_by_tree(contacts, tree.moments, v, tau, tol, table[table.shape[0] - 1])
+    _sum_all(contacts, v, 0.0, tau * tau, blur > 0.0, table)
     total = table[table.shape[0] - 1]
     kink = _slowest(contacts, v, table) if total[11] > 0.0 else -1
     if kink < 0:  # none, or without friction
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0, 0.0
     mass = 0.0
     for q in range(table.shape[0] - 1):
         if table[q, 11] > 0.0:
             mass += _add_slow(contacts, q, v, tau, kink, total)
     if mass == 0.0:  # only contacts without friction were left out
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0
-    return kink_of(contacts, kink, mass), 0.0
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0, 0.0
+    return kink_of(contacts, kink, mass), 0.0, 0.0
 
 
 @compiled
 def _sums_by_tree(
-    contacts: Contacts, tree: Tree, v: Vector, tau: float, total: Floats
-) -> tuple[Kink, float]:
+    contacts: Contacts, moments: MomentTree, v: Vector, tau: float, tol: float, total: Floats
+) -> tuple[Kink, float, float]:
     """Fill the total by moments; the nearest contact is the kink if it is slower than tau."""
     kink = -1
     if tau > 0.0:
-        kink, distance = nearest_contact(tree.moments, -v[1] / v[2], v[0] / v[2])
+        kink, distance = nearest_contact(moments, -v[1] / v[2], v[0] / v[2])
         if distance * abs(v[2]) >= tau or not contacts.data[2, kink] > 0.0:
             kink = -1
-    error, _ = tree_sums(tree.moments, np.array(v), kink, tree.tol, total[:11])
+    of_g, of_h = tree_sums(moments, np.array(v), kink, tol, total[:11])
     if kink < 0:
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), error
-    return kink_of(contacts, kink, contacts.data[2, kink]), error
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), of_g, of_h
+    return kink_of(contacts, kink, contacts.data[2, kink]), of_g, of_h
+
+
+@compiled
+def always_curved(tree: Tree | None) -> bool:
+    """Return whether sums have a Hessian also where blur = 0."""
+    return tree is not None
 
 
 @compiled

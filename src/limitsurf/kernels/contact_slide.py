@@ -10,6 +10,7 @@ import numpy as np
 from limitsurf.kernels.compile import Floats, compiled
 from limitsurf.kernels.contact_pass import (
     Kink,
+    always_curved,
     contact_velocity,
     exact_sums,
     gradient,
@@ -39,6 +40,7 @@ __all__ = ["pin", "slide"]
 _EPS = float(np.finfo(np.float64).eps)
 _PINS = 8
 _LAST = 1e-5  # residual, relative to the size, which the next step should square
+_FIRST, _FINE = 1e-6, 1e-12  # errors allowed in sums that are not the last, per unit of friction
 
 Next = tuple[int, Vector, float]
 
@@ -99,7 +101,7 @@ def _kink_force(
 
 
 @compiled
-def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int, curved: bool) -> Look:
+def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int, blur: float) -> Look:
     r"""Pass at d, :math:`d^T Q d = 1`, and keep the certificate of the twist :math:`\psi(d)\, d`.
 
     `u` is the kink's velocity, zero if it is rounding; `t` is :math:`\psi(d)`; `left` is c less the
@@ -109,7 +111,7 @@ def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int, curve
     setting = problem.setting
     c = setting.c
     tau = abs(d[2]) * setting.spacing
-    kink, slack = exact_sums(problem.contacts, d, tau, curved, problem.table)
+    kink, slack, unsure = exact_sums(problem.contacts, d, tau, blur, problem.table)
     best[PASSES] += 1
     one, two = kink_columns(kink)
     u = dot(one, d), dot(two, d)
@@ -130,7 +132,7 @@ def _look(problem: Problem, best: Floats, d: Vector, f: Pair, before: int, curve
         bound += 2.0 * slack * math.sqrt(dot(C[0], C[0]) + dot(C[1], C[1]) + dot(C[2], C[2]))
     witness = Witness(d, 0.0, kink.contact, kink.mass * force[0], kink.mass * force[1])
     keep(best, bound, along(c, -1.0, rest), v, witness)
-    noise = 4.0 * _EPS * (h + abs(dot(c, d)))
+    noise = 4.0 * _EPS * (h + abs(dot(c, d))) + unsure
     return Look(kink, one, two, u, t, times(setting.Q, d), left, rest, noise, bound)
 
 
@@ -188,8 +190,8 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
     """
     setting = problem.setting
     d = _on_sphere(setting, v)
-    look = _look(problem, best, d, (0.0, 0.0), -1, True)
-    stalled, least = 0, np.inf
+    look = _look(problem, best, d, (0.0, 0.0), -1, _FIRST)
+    stalled, least, curved = 0, np.inf, always_curved(problem.contacts.tree)
     for _ in range(40):
         if look.bound <= setting.target:
             return CERTIFIED, d, 0.0
@@ -205,20 +207,22 @@ def slide(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         share = min(1.0, 1.0 / math.sqrt(max(form(setting.Q, step), 1e-300)))
         kink, lowest = look.kink, look.t - look.noise
-        curved = off > _LAST * setting.scale  # else this step should do
+        blur = 0.0  # the next step should do
+        if off > _LAST * setting.scale:
+            blur = min(_FIRST, 1e-2 * (off / setting.scale) ** 2 + _FINE)
         for _ in range(6):
             trial = along(d, share, step)
             if still and share == 1.0 and kink.stretch == (1.0, 0.0, 1.0):
                 trial = snapped(kink, trial)
             trial = _on_sphere(setting, trial)
-            look = _look(problem, best, trial, f, kink.contact, curved)
-            if not curved and look.bound > setting.target:
-                curved = True
-                look = _look(problem, best, trial, f, kink.contact, curved)
-            if look.t >= lowest - 1e-4 * share * expected:
+            look = _look(problem, best, trial, f, kink.contact, blur)
+            if blur == 0.0 and look.bound > setting.target and not curved:
+                blur = _FINE
+                look = _look(problem, best, trial, f, kink.contact, blur)
+            if look.t >= lowest - look.noise - 1e-4 * share * expected:
                 break
             share *= 0.35
-        if look.t < lowest - 1e-4 * share * expected:
+        if look.t < lowest - look.noise - 1e-4 * share * expected:
             break
         d = trial
     return GAVE_UP, d, 0.0
@@ -246,7 +250,7 @@ def pin(problem: Problem, best: Floats, v: Vector) -> Next:
             break
         slower = nearest
         about = _on_sphere(setting, snapped(kink_of(contacts, found, 0.0), d))
-        bound = _look(problem, best, about, (0.0, 0.0), -1, True).bound
+        bound = _look(problem, best, about, (0.0, 0.0), -1, _FIRST).bound
         if bound <= setting.target:
             return CERTIFIED, about, 0.0
         if bound < least:
