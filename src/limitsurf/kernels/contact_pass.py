@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import objmode
 
-from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.compile import Floats, Ints, compiled
 from limitsurf.kernels.moment_tree import tree_sums
 from limitsurf.kernels.moment_tree_build import MomentTree
 from limitsurf.kernels.nearest_contact import nearest_contact
@@ -356,18 +356,51 @@ def _exact_sums(
     if tree is not None:  # decided when compiled
         tol = max(tree.tol, blur)
         return _sums_by_tree(contacts, tree.moments, v, tau, tol, table[table.shape[0] - 1])
-    _sum_all(contacts, v, 0.0, tau * tau, blur > 0.0, table)
     total = table[table.shape[0] - 1]
-    kink = _slowest(contacts, v, table) if total[11] > 0.0 else -1
-    if kink < 0:  # none, or without friction
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0, 0.0
-    mass = 0.0
+    _sum_all(contacts, v, 0.0, tau * tau, blur > 0.0, table)
+    slow = _left_out(contacts, v, tau, table)
+    while slow.shape[0] != total[11]:  # rounding at the threshold differs between the two loops
+        tau *= 0.99
+        _sum_all(contacts, v, 0.0, tau * tau, blur > 0.0, table)
+        slow = _left_out(contacts, v, tau, table)
+    return _without_kink(contacts, v, slow, total), 0.0, 0.0
+
+
+@compiled
+def _left_out(contacts: Contacts, v: Vector, tau: float, table: Floats) -> Ints:
+    """Return the contacts slower than tau, looking only into blocks that left some out."""
+    found = np.empty(int(table[table.shape[0] - 1, 11]) + 1, np.int32)
+    count = 0
     for q in range(table.shape[0] - 1):
-        if table[q, 11] > 0.0:
-            mass += _add_slow(contacts, q, v, tau, kink, total)
-    if mass == 0.0:  # only contacts without friction were left out
-        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0, 0.0
-    return kink_of(contacts, kink, mass), 0.0, 0.0
+        if table[q, 11] == 0.0:
+            continue
+        for i in range(q * BLOCK, min((q + 1) * BLOCK, contacts.data.shape[1])):
+            ux, uy = contact_velocity(contacts, i, v)
+            if ux * ux + uy * uy < tau * tau:
+                found[min(count, found.shape[0] - 1)] = i
+                count += 1
+    return found[: min(count, found.shape[0])]
+
+
+@compiled
+def _without_kink(contacts: Contacts, v: Vector, slow: Ints, total: Floats) -> Kink:
+    """Add slow contacts to the total, but those at the place of the slowest, the kink."""
+    data, kink, least = contacts.data, -1, np.inf
+    for i in slow:
+        ux, uy = contact_velocity(contacts, i, v)
+        if data[2, i] > 0.0 and ux * ux + uy * uy < least:
+            least, kink = ux * ux + uy * uy, i
+    if kink < 0:  # none, or without friction
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0))
+    mass, at_kink = 0.0, stretch_of(contacts, kink)
+    for i in slow:
+        same = data[0, i] == data[0, kink] and data[1, i] == data[1, kink]
+        stretch = stretch_of(contacts, i)
+        if same and stretch == at_kink:
+            mass += data[2, i]
+        else:
+            add_contact(data[0, i], data[1, i], data[2, i], stretch, v, 0.0, total)
+    return kink_of(contacts, kink, mass)
 
 
 @compiled
@@ -396,34 +429,3 @@ def always_curved(tree: Tree | None) -> bool:
 def kink_of(contacts: Contacts, i: int, mass: float) -> Kink:
     """Return contact i as a kink of the given friction radius."""
     return Kink(i, mass, contacts.data[0, i], contacts.data[1, i], stretch_of(contacts, i))
-
-
-@compiled
-def _slowest(contacts: Contacts, v: Vector, table: Floats) -> int:
-    """Return the slowest contact, looking only into blocks that left some out."""
-    best, found = np.inf, -1
-    for q in range(table.shape[0] - 1):
-        if table[q, 11] > 0.0:
-            for i in range(q * BLOCK, min((q + 1) * BLOCK, contacts.data.shape[1])):
-                ux, uy = contact_velocity(contacts, i, v)
-                if contacts.data[2, i] > 0.0 and ux * ux + uy * uy < best:
-                    best, found = ux * ux + uy * uy, i
-    return found
-
-
-@compiled
-def _add_slow(contacts: Contacts, q: int, v: Vector, tau: float, kink: int, total: Floats) -> float:
-    """Add the contacts of a block that were left out, but those at the kink; return their mass."""
-    mass = 0.0
-    x, y, m = contacts.data[0], contacts.data[1], contacts.data[2]
-    at_kink = stretch_of(contacts, kink)
-    for i in range(q * BLOCK, min((q + 1) * BLOCK, x.shape[0])):
-        ux, uy = contact_velocity(contacts, i, v)
-        if ux * ux + uy * uy >= tau * tau:
-            continue
-        stretch = stretch_of(contacts, i)
-        if x[i] == x[kink] and y[i] == y[kink] and stretch == at_kink:
-            mass += m[i]
-        else:
-            add_contact(x[i], y[i], m[i], stretch, v, 0.0, total)
-    return mass
