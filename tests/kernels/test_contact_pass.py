@@ -9,15 +9,17 @@ from limitsurf.kernels.contact_pass import (
     Tree,
     contact_columns,
     contact_velocity,
+    kink_of,
+)
+from limitsurf.kernels.contact_problem import second_moments
+from limitsurf.kernels.contact_totals import (
     exact_sums,
     gradient,
     hessian,
-    kink_of,
     new_table,
     smoothed_sums,
     sum_error,
 )
-from limitsurf.kernels.contact_problem import second_moments
 from limitsurf.kernels.moment_tree_build import build_moment_tree
 from tests.kernels.clouds import clouds, twists, weights
 from tests.kernels.test_symmetric3 import full, three

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from limitsurf.kernels.contact_pass import Contacts, new_table
+from limitsurf.kernels.contact_pass import Contacts
 from limitsurf.kernels.contact_problem import (
     BOUND,
     LOAD,
@@ -13,6 +13,7 @@ from limitsurf.kernels.contact_problem import (
     new_setting,
     second_moments,
 )
+from limitsurf.kernels.contact_totals import new_table
 from limitsurf.kernels.primal_dual import primal_dual
 from tests.kernels.test_symmetric3 import three
 from tests.sets.contact_cases import cases, clouds, load_of, norm

@@ -20,8 +20,8 @@ from limitsurf.kernels.project_loads import (
     POINTS,
     STATUSES,
     TWISTS,
-    project_ragged,
 )
+from limitsurf.kernels.project_ragged import project_ragged
 from limitsurf.sets.arguments import as_array, as_points, check_effort, read_metric
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM

@@ -21,7 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Contacts, stretch_of, sum_error
+from limitsurf.kernels.contact_pass import Contacts, stretch_of
+from limitsurf.kernels.contact_totals import sum_error
 from limitsurf.kernels.symmetric3 import Symmetric, form, plus_outer
 from limitsurf.kernels.vectors import Vector, along, cross, dot
 

@@ -8,15 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import (
-    Kink,
-    always_curved,
-    contact_velocity,
-    exact_sums,
-    gradient,
-    hessian,
-    kink_of,
-)
+from limitsurf.kernels.contact_pass import Kink, contact_velocity, kink_of
 from limitsurf.kernels.contact_problem import (
     CERTIFIED,
     GAVE_UP,
@@ -30,6 +22,12 @@ from limitsurf.kernels.contact_problem import (
     residual,
     speed,
     times_metric,
+)
+from limitsurf.kernels.contact_totals import (
+    always_curved,
+    exact_sums,
+    gradient,
+    hessian,
 )
 from limitsurf.kernels.kink_step import FLAT, Pair, axes_of, kink_columns, kink_step, snapped
 from limitsurf.kernels.symmetric3 import form, plus, plus_outer, solved, times

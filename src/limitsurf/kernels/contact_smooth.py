@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Kink, gradient, hessian, smoothed_sums
+from limitsurf.kernels.contact_pass import Kink
 from limitsurf.kernels.contact_problem import (
     BOUND,
     CERTIFIED,
@@ -25,6 +25,7 @@ from limitsurf.kernels.contact_problem import (
     speed,
     times_metric,
 )
+from limitsurf.kernels.contact_totals import gradient, hessian, smoothed_sums
 from limitsurf.kernels.kink_step import kink_columns, snapped, step_of_solved
 from limitsurf.kernels.symmetric3 import form, plus, solved, times
 from limitsurf.kernels.vectors import Vector, along, dot, scaled

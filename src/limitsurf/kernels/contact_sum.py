@@ -13,7 +13,12 @@ import math
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Contacts, contact_velocity, kink_of, stretch_of
+from limitsurf.kernels.contact_pass import (
+    Contacts,
+    contact_velocity,
+    kink_of,
+    stretch_of,
+)
 from limitsurf.kernels.contact_problem import (
     BOUND,
     CERTIFIED,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import Contacts, Tree, new_table
+from limitsurf.kernels.contact_pass import Contacts, Tree
 from limitsurf.kernels.contact_problem import (
     BOUND,
     CERTIFIED,
@@ -23,6 +23,7 @@ from limitsurf.kernels.contact_problem import (
 )
 from limitsurf.kernels.contact_slide import slide
 from limitsurf.kernels.contact_sum import COLD, solve_contact_sum
+from limitsurf.kernels.contact_totals import new_table
 from limitsurf.kernels.moment_tree_build import MomentTree
 from limitsurf.kernels.project_loads import (
     COLUMNS,

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import BLOCK, Contacts, new_table
+from limitsurf.kernels.contact_pass import BLOCK, Contacts
 from limitsurf.kernels.contact_problem import (
     BOUND,
     EPS,
@@ -33,6 +33,7 @@ from limitsurf.kernels.contact_problem import (
     second_moments,
 )
 from limitsurf.kernels.contact_sum import solve_contact_sum
+from limitsurf.kernels.contact_totals import new_table
 from limitsurf.kernels.lattice import Cover, Lattice, covered_sites, new_cover
 
 __all__ = ["LEFT_ARRAY", "NOT_LIFTED", "REST", "TIME_LIMIT", "Body", "Ground", "slide"]

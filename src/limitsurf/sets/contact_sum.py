@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,11 +17,8 @@ from limitsurf.kernels.project_by_tree import project_by_tree
 from limitsurf.kernels.project_loads import (
     BOUNDS,
     COUNTS,
-    DISTANCES,
-    NORMALS,
     POINTS,
     STATUSES,
-    TWISTS,
     WITNESSES,
     contact_forces,
     contact_numbers,
@@ -35,11 +32,12 @@ from limitsurf.sets.arguments import (
     check_effort,
     read_metric,
 )
+from limitsurf.sets.contact_projection import ContactProjection
 from limitsurf.sets.convex_set import ConvexSet, Rows
 from limitsurf.sets.projection import Projection, Status
 from limitsurf.tolerances import CONTACT_SUM
 
-__all__ = ["ContactProjection", "ContactSum"]
+__all__ = ["ContactSum"]
 
 Array = NDArray[np.float64]
 
@@ -48,53 +46,6 @@ _SIDE = 24  # cells a side that they are gathered in
 _VERY_MANY, _SOLVES = 100_000, 20  # where a quadtree pays, and after how many loads
 _ORDER = 16  # of its moments
 _NOTHING_KNOWN = np.empty((0, 4))
-
-
-class ContactProjection(Projection):
-    """Closest points of a sum of contacts, as `Projection`, and the forces of the contacts.
-
-    The twist is exactly zero for loads inside, and more precise than ``W (point - p)`` where
-    these nearly agree.
-    """
-
-    def __init__(
-        self,
-        surface: ContactSum,
-        load: Array,
-        metric: Metric,
-        answers: Array,
-        shape: tuple[int, ...],
-    ) -> None:
-        self.__dict__.update(
-            surface=surface, load=load, metric=metric, answers=answers, shape=shape
-        )
-
-    surface: ContactSum
-    load: Array
-    metric: Metric
-    answers: Array
-    shape: tuple[int, ...]
-
-    def _vectors(self, columns: slice) -> Array:
-        return self.answers[:, columns].reshape(*self.shape, columns.stop - columns.start)
-
-    point = property(lambda self: self._vectors(POINTS))
-    normal = property(lambda self: self._vectors(NORMALS))
-    twist = property(lambda self: self._vectors(TWISTS))
-    witness = property(lambda self: self._vectors(WITNESSES))
-    distance = property(lambda self: self.answers[:, DISTANCES].reshape(self.shape))
-    error_bound = property(lambda self: self.answers[:, BOUNDS].reshape(self.shape))
-    iterations = property(lambda self: self.answers[:, COUNTS].astype(np.int64).reshape(self.shape))
-    status = property(lambda self: self.answers[:, STATUSES].astype(np.int64).reshape(self.shape))
-
-    def contact_forces(self) -> Array:
-        """Return the friction forces (..., N, 2) of the contacts on the part.
-
-        Their loads, and `ContactSum.center`, add up to `point`.
-        """
-        rows = zip(self.load, self.answers[:, WITNESSES], strict=True)
-        forces = [self.surface.forces(p, self.metric, w) for p, w in rows]
-        return np.array(forces).reshape(*self.shape, self.surface.count, 2)
 
 
 class ContactSum(ConvexSet):
@@ -335,7 +286,8 @@ class ContactSum(ConvexSet):
             kink[known] = moments.permutation[kink[known].astype(np.int64)]
         else:
             answers, failed = project_loads(*self._kernel_data, points, W.C, starts, tol, threads)
-        projection = ContactProjection(self, points, W, answers, shape)
+        forces = partial(self.forces, metric=W)
+        projection = ContactProjection(forces, self.count, points, answers, shape)
         if failed:
             as_points("p", p, 3)  # raises where entries are not finite
             if throw:
@@ -357,7 +309,7 @@ class ContactSum(ConvexSet):
         moving = np.where((vx != 0.0) | (vy != 0.0) | (w != 0.0), 0.0, COLD)
         return np.column_stack([vx - w * cy, vy + w * cx, w, moving])
 
-    def forces(self, p: Array, metric: Metric, witness: Array) -> Array:
+    def forces(self, p: Array, witness: Array, metric: Metric) -> Array:
         """Return the forces (N, 2) of the answer with this witness to the load p."""
         f = contact_forces(*self._kernel_data, p, metric.C, witness, CONTACT_SUM)
         if len(self._stretch):
