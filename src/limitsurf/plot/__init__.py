@@ -4,6 +4,7 @@ Every function returns a plotly figure, with units on its axes: ``draw_part(part
 """
 
 from limitsurf.plot.errors import draw_errors
+from limitsurf.plot.limit_curve import draw_limit_curve
 from limitsurf.plot.limit_surface import draw_limit_surface
 from limitsurf.plot.part import draw_part
 from limitsurf.plot.runs import animate_runs
@@ -13,6 +14,7 @@ from limitsurf.plot.turn import draw_turn_function
 __all__ = [
     "animate_runs",
     "draw_errors",
+    "draw_limit_curve",
     "draw_limit_surface",
     "draw_part",
     "draw_plan",
