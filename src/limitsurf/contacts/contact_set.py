@@ -143,13 +143,15 @@ class ContactSet:
     ) -> Projection:
         """Return the loads of the limit surface closest to p, with twists and certified errors.
 
-        See `ContactSum.project`. The answer's ``contact_forces()`` are the friction forces, without
-        the offsets. Polygons know neither start nor forces.
+        See `ContactSum.project`. The answer's ``contact_forces()`` are those of the contacts on the
+        part, pushes included: their loads add up to the point. Polygons know neither start nor
+        forces.
         """
         surface = self._surface
-        if isinstance(surface, ContactSum):
-            return surface.project(p, metric, start=start, tol=tol, threads=threads, throw=throw)
-        return surface.project(p, metric, throw=throw)
+        if not isinstance(surface, ContactSum):
+            return surface.project(p, metric, throw=throw)
+        found = surface.project(p, metric, start, tol=tol, threads=threads, throw=throw)
+        return found if self._offset is None else found.with_pushes(self._offset)
 
     def seen_from(self, r: ArrayLike) -> ContactSet:
         """Return the same contacts from another reference point, at r from the old one [m]."""

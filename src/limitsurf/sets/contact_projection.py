@@ -60,10 +60,19 @@ class ContactProjection(Projection):
     iterations = property(lambda self: self.answers[:, COUNTS].astype(np.int64).reshape(self.shape))
     status = property(lambda self: self.answers[:, STATUSES].astype(np.int64).reshape(self.shape))
 
-    def contact_forces(self) -> Array:
-        """Return the friction forces (..., N, 2) of the contacts on the part.
+    def with_pushes(self, pushes: Array) -> ContactProjection:
+        """Return the same answers, with mean pushes (N, 2) added to the forces."""
 
-        Their loads, and `ContactSum.center`, add up to `point`.
+        def forces(p: Array, witness: Array) -> Array:
+            return self._forces(p, witness) + pushes
+
+        return ContactProjection(forces, self.count, self.load, self.answers, self.shape)
+
+    def contact_forces(self) -> Array:
+        """Return the forces (..., N, 2) of the contacts on the part.
+
+        Of a `ContactSet` with its pushes: their loads add up to `point`. Of a `ContactSum` friction
+        alone: their loads and the center do.
         """
         rows = zip(self.load, self.answers[:, WITNESSES], strict=True)
         forces = np.array([self._forces(p, witness) for p, witness in rows])

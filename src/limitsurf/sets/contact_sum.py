@@ -239,9 +239,9 @@ class ContactSum(ConvexSet):
         self,
         p: ArrayLike,
         metric: ArrayLike | None = None,
+        start: ArrayLike | Projection | None = None,
         *,
         throw: bool = True,
-        start: ArrayLike | Projection | None = None,
         tol: float | None = None,
         threads: int = 1,
         sublinear: bool | None = None,
@@ -254,11 +254,11 @@ class ContactSum(ConvexSet):
             Loads [N, N, N m].
         metric : (3, 3) or (3,) float, optional
             Symmetric positive definite W, or its diagonal; distance^2 is ``e' W e``.
+        start : (..., 3) float or Projection, optional
+            Twists, or the answer of a problem nearby, to start from.
         throw : bool
             Raise `SolveFailed` if an error bound is above 1e-6 of the size of the problem; False
             returns the best points, with `Status.FAILED`.
-        start : (..., 3) float or Projection, optional
-            Twists, or the answer of a problem nearby, to start from.
         tol : float
             Error bound asked for, relative to ``sum m_i + |p - center|`` in the norm of the metric;
             1e-12 if not given.
