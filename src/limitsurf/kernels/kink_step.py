@@ -152,7 +152,12 @@ def _unit_force(a: float, b: float, d: float, m: float, r: Pair) -> tuple[Pair, 
 
 @compiled
 def _step_about(B: Symmetric, b: Vector, kink: Kink, u: Pair) -> tuple[bool, Vector, Pair, bool]:
-    """Return what `kink_step` does, for a disk."""
+    r"""Return what `kink_step` does, for a disk, without inverting a nearly singular B.
+
+    With n the rotation about the contact, :math:`G^T n = 0`, and :math:`d = (\delta, 0) + w n`, the
+    model is least over w first. A, the Schur complement of n, is left: :math:`A p + m f = r` for
+    :math:`p = u + \delta`, so that p = 0 if :math:`|r| \le m`, else :math:`(m + \sigma A) f = r`.
+    """
     n, m = (kink.y, -kink.x, 1.0), kink.mass
     Bn = times(B, n)
     turning, gw = dot(n, Bn), dot(n, b)
