@@ -40,9 +40,7 @@ def python_blocks(path):
 
 
 def test_readme_example_runs(capsys):
-    blocks = python_blocks(ROOT / "README.md")
-    assert len(blocks) == 1
-    code = blocks[0]
+    code = python_blocks(ROOT / "README.md")[0]
     assert len([line for line in code.splitlines() if line.strip()]) <= 10
     names = {}
     exec(compile(code, "README.md", "exec"), names)
@@ -50,6 +48,17 @@ def test_readme_example_runs(capsys):
     assert repr(names["plan"]) in printed
     assert repr(names["result"]) in printed
     assert names["result"].rate > 0.9
+
+
+def test_readme_example_of_friction_runs(capsys):
+    code = python_blocks(ROOT / "README.md")[1]
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    answer = names["answer"]
+    assert repr(answer) in capsys.readouterr().out
+    assert answer.net == pytest.approx(answer.friction + [2.5, 0.0, 0.1])
+    assert not answer.sticks
+    assert answer.projection.error_bound < 1e-10
 
 
 def test_links_within_the_repository_work():
