@@ -155,6 +155,8 @@ def _exact_sums(
         return _sums_by_tree(contacts, tree.moments, v, tau, tol, table[table.shape[0] - 1])
     total = table[table.shape[0] - 1]
     _sum_all(contacts, v, 0.0, tau * tau, blur > 0.0, table)
+    if total[11] == 0.0:
+        return Kink(-1, 0.0, 0.0, 0.0, (1.0, 0.0, 1.0)), 0.0, 0.0
     slow = _left_out(contacts, v, tau, table)
     while slow.shape[0] != total[11]:  # rounding at the threshold differs between the two loops
         tau *= 0.99
