@@ -23,6 +23,25 @@ def test_quantities(text, unit, value):
 
 
 @pytest.mark.parametrize(
+    ("unit", "others"),
+    [
+        ("m", ["um", "mm", "inch"]),
+        ("kg/m^2", ["g/m^2", "mg/mm^2"]),
+        ("V", ["mV", "kV"]),
+        ("N*s/m", ["uN*s/m"]),
+        ("Pa", ["GPa", "N/mm^2"]),
+        ("rad", ["deg"]),
+    ],
+)
+def test_round_trips(unit, others):
+    for value in (1.0, 1.14e-6, -0.3, 7.96e10):
+        assert parse_quantity(f"{value!r} {unit}", unit) == value
+        for other in others:
+            there = parse_quantity(f"{value!r} {unit}", other)
+            assert parse_quantity(f"{there!r} {other}", unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
     ("text", "unit", "problem"),
     [
         ("50 parsnip", "m", "unknown unit"),

@@ -61,7 +61,9 @@ def test_spread_of_a_lattice_is_seeded():
     ("arguments", "name"),
     [
         ((0, 3, 1.0, headings(4)), "rows"),
+        ((3, 2.5, 1.0, headings(4)), "columns"),
         ((3, 3, -1.0, headings(4)), "pitch"),
+        ((3, 3, "wide", headings(4)), "pitch"),
         ((3, 3, 1.0, [[0.0, 0.0]]), "directions"),
         ((3, 3, 1.0, [1.0, 0.0]), "directions"),
         ((3, 3, 1.0, headings(2), [[0.0, 0.0]]), "offsets"),
@@ -73,3 +75,5 @@ def test_bad_lattices_are_named(arguments, name):
             build(*arguments)
     with pytest.raises(InputError, match="count"):
         headings(0)
+    with pytest.raises(InputError, match="count"):
+        headings(2.5)

@@ -232,9 +232,26 @@ def test_a_leading_drive_limits_the_swing():
         BASE.floating(PAPER, 50.0, MU, 0.0)
 
 
+@pytest.mark.parametrize("voltage", [60.0, 75.0, 100.0])
+def test_the_swing_of_a_lag_is_steady(voltage):
+    """Past some 1.8 um it runs away before it gets there; below a static tilt it cannot come."""
+    lag = BASE.lag_for(voltage, 1.5e-6)
+    swing = BASE.frequency_response(voltage, [lag]).edge_amplitude
+    assert swing == pytest.approx([1.5e-6], rel=1e-9)
+    with pytest.raises(InputError, match="runs away"):
+        BASE.lag_for(voltage, 2.5e-6)
+    with pytest.raises(InputError, match="whatever the lag"):
+        BASE.lag_for(voltage, 1e-12)
+
+
 @pytest.mark.parametrize(
     ("arguments", "name"),
-    [((0.0, 50.0, MU), "load"), ((PAPER, -1.0, MU), "voltage"), ((PAPER, 50.0, -0.1), "mu")],
+    [
+        ((0.0, 50.0, MU), "load"),
+        (("heavy", 50.0, MU), "load"),
+        ((PAPER, -1.0, MU), "voltage"),
+        ((PAPER, 50.0, -0.1), "mu"),
+    ],
 )
 def test_bad_arguments_are_named(arguments, name):
     with pytest.raises(InputError, match=name):

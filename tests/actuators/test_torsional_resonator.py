@@ -9,7 +9,8 @@ from scipy.optimize import brentq
 from limitsurf.actuators.resonator_kernel import grid_record
 from limitsurf.actuators.rim_force import calibrated_width, force_scaling
 from limitsurf.actuators.torsional_resonator import TorsionalResonator
-from limitsurf.errors import AmplitudeBeyondClearance, BeyondPullIn, InputError
+from limitsurf.errors import AmplitudeBeyondClearance, BeyondPullIn, InputError, ModelError
+from limitsurf.modelfiles import find_model
 from limitsurf.units import parse_quantity
 from tests.actuators.resonator_twin import LEGENDRE, rim_torque
 
@@ -194,6 +195,8 @@ def test_amplitude_beyond_the_clearance_is_named(resonator):
         ({"drive": "square"}, "drive"),
         ({"shear_modulus_tall": -79.6e9}, "shear_modulus_tall"),
         ({"colour": 1.0}, "colour"),
+        ({"quality": "high"}, "quality"),
+        ({"rod_offset": None}, "rod_offset"),
     ],
 )
 def test_bad_numbers_are_named(resonator, changes, name):
@@ -201,12 +204,35 @@ def test_bad_numbers_are_named(resonator, changes, name):
         resonator.varied(**changes)
 
 
-@pytest.mark.parametrize("value", [0.0, -50.0, np.nan, np.inf])
+@pytest.mark.parametrize("value", [0.0, -50.0, np.nan, np.inf, "50"])
 def test_bad_voltages_and_frequencies(resonator, value):
     with pytest.raises(InputError, match="voltage"):
         resonator.amplitude(value)
     with pytest.raises(InputError, match="frequency"):
         resonator.amplitude(50.0, value)
+
+
+@pytest.mark.parametrize("value", [-50.0, np.nan, np.inf, "50 V", None])
+def test_bad_voltages_of_statics_are_named(resonator, value):
+    for force in (
+        resonator.vertical_force,
+        resonator.ideal_force,
+        resonator.force_per_area,
+        resonator.torque,
+        resonator.static_tilt,
+    ):
+        with pytest.raises(InputError, match="voltage"):
+            force(value)
+    with pytest.raises(InputError, match="sizes"):
+        force_scaling(resonator, [-1e-5], 50.0)
+
+
+def test_model_files_that_cannot_be_built_are_named(resonator, tmp_path):
+    text = find_model("resonators", "resonator1994").read_text()
+    path = tmp_path / "lossy.toml"
+    path.write_text(text.replace("value = 1\n", "value = 0.5\n"))
+    with pytest.raises(ModelError, match=r"lossy\.toml: restitution"):
+        TorsionalResonator.from_model(path)
 
 
 def test_other_bad_arguments(resonator):

@@ -49,6 +49,12 @@ def test_check_accepts_all_shipped_models(capsys):
     assert "ok  resonators/resonator1994: 19 numbers, 9 assumed" in out
 
 
+def test_check_takes_names(capsys):
+    code, out, _ = run(capsys, "models", "check", "Resonator1994", "paper_t")
+    assert (code, out.count("ok  "), out.count("/resonator1994")) == (0, 3, 2)
+    assert run(capsys, "models", "check", "paper_t", "--kind", "plans")[0] == 2
+
+
 def test_check_names_file_field_and_problem(capsys, tmp_path):
     path = tmp_path / "mine.toml"
     text = find_model("resonators", "resonator1994").read_text()

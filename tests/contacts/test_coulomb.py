@@ -1,7 +1,12 @@
 import numpy as np
 import pytest
 
-from limitsurf.contacts.coulomb import contact_map, coulomb_contact, polygonal_contact
+from limitsurf.contacts.coulomb import (
+    contact_map,
+    coulomb_contact,
+    elliptic_contact,
+    polygonal_contact,
+)
 from limitsurf.errors import InputError
 
 
@@ -32,10 +37,26 @@ def test_polygons_bracket_the_disk_with_the_stated_error(rng, sides, outside):
     assert signed.max() > 0.5 * error
 
 
+def test_an_elliptic_contact_holds_its_half_axes(rng):
+    """Support sqrt((a d.e)^2 + (b d.n)^2) of the force, moments by the arm."""
+    e, a, b, r = np.array([0.6, 0.8]), 2.0, 0.5, np.array([0.7, -1.2])
+    contact = elliptic_contact(r, [a, b], 3.0 * e)
+    d = rng.normal(size=(50, 3))
+    at = d[:, :2] + d[:, 2:] * [-r[1], r[0]]
+    across = at @ [-e[1], e[0]]
+    assert contact.support(d) == pytest.approx(np.hypot(a * (at @ e), b * across), rel=1e-13)
+    round_one = elliptic_contact(r, [a, a], e)
+    assert round_one.support(d) == pytest.approx(coulomb_contact(r, a).support(d), rel=1e-13)
+
+
 def test_bad_arguments():
     with pytest.raises(InputError, match="radius"):
         coulomb_contact([0, 0], -1.0)
     with pytest.raises(InputError, match="sides"):
         polygonal_contact([0, 0], 1.0, 2)
+    with pytest.raises(InputError, match="sides"):
+        polygonal_contact([0, 0], 1.0, 6.5)
+    with pytest.raises(InputError, match="radius"):
+        coulomb_contact([0, 0], "large")
     with pytest.raises(InputError, match="position"):
         contact_map([0, 0, 0])

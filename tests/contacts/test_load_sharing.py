@@ -123,6 +123,8 @@ def test_given_loads_are_checked():
     [
         ({"weight": -1.0}, "weight"),
         ({"weight": np.inf}, "weight"),
+        ({"weight": "4 N"}, "weight"),
+        ({"lift": "half"}, "lift"),
         ({"lift": 1.5}, "lift"),
         ({"lift": np.nan}, "lift"),
         ({"rule": "fair"}, "rule"),

@@ -239,6 +239,8 @@ def test_a_block_on_a_shaken_tip_drifts_as_the_potential_says(w, N, speed, rippl
         ({"normal_force": np.ones(63)}, "normal_force"),
         ({"normal_force": "much"}, "normal_force"),
         ({"samples": 1}, "samples"),
+        ({"samples": np.nan}, "samples"),
+        ({"mu": "dry"}, "mu"),
         ({"mu": np.ones(2), "tip_velocity": np.zeros((3, 64))}, "contacts"),
     ],
 )
@@ -258,6 +260,7 @@ def test_bad_queries_are_named():
         (lambda: tips.reach(1.0), "reach"),
         (lambda: tips.active_set(), "active_set"),
         (lambda: lossy_tip().reach(-1.0), "speed"),
+        (lambda: lossy_tip().reach("slow"), "speed"),
         (lambda: lossy_tip().reach(1.0, tol=0.0), "tol"),
     ):
         with pytest.raises(InputError) as caught:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_number
 
 __all__ = ["Activation", "direction_error", "squeeze_activation"]
 
@@ -77,7 +78,7 @@ def squeeze_activation(
     >>> squeeze_activation(load_array("resonator32"), 0.5)
     Activation(1024 of 4096 actuators, line at 28.65 deg)
     """
-    if not np.isfinite(line):
+    if not np.isfinite(as_number("line", line)):
         raise InputError("line", "must be a finite angle", value=line)
     if method not in ("dither", "nearest"):
         raise InputError("method", "is unknown", value=method, remedy="use dither or nearest")

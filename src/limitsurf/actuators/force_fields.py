@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_array, as_number
 
 __all__ = [
     "Field",
@@ -60,8 +61,10 @@ def skewed_squeeze_field(line: float, skew: float, offset: float = 0.0) -> Field
     fields for distributed manipulation*, Int. J. Robotics Research 18, 1999).
     """
     along, normal = _unit(line), _unit(line + 0.5 * np.pi)
-    if not abs(skew) < 0.5 * np.pi:
+    if not abs(as_number("skew", skew)) < 0.5 * np.pi:
         raise InputError("skew", "must lie between -pi/2 and pi/2", value=skew)
+    if not np.isfinite(as_number("offset", offset)):
+        raise InputError("offset", "must be finite", value=offset)
     push = np.sin(skew) * along + np.cos(skew) * normal
 
     def field(points: Array) -> Array:
@@ -72,7 +75,7 @@ def skewed_squeeze_field(line: float, skew: float, offset: float = 0.0) -> Field
 
 def radial_field(center: ArrayLike = (0.0, 0.0)) -> Field:
     """Return the unit field towards a point; zero there."""
-    middle = np.asarray(center, np.float64)
+    middle = as_array("center", center, 2)
 
     def field(points: Array) -> Array:
         arm = middle - points
@@ -104,7 +107,7 @@ def elliptic_field(stiffness: ArrayLike, reach: float, axis: float = 0.0) -> Fie
     >>> elliptic_field((2.0, 1.0), 1e-3)(np.array([[5e-4, 5e-4]]))
     array([[-0.5 , -0.25]])
     """
-    alpha, beta = (float(s) for s in np.asarray(stiffness, np.float64))
+    alpha, beta = (float(s) for s in as_array("stiffness", stiffness, 2))
     if not (min(alpha, beta) > 0.0 and np.isfinite(alpha + beta)):
         raise InputError("stiffness", "must be two positive numbers", value=(alpha, beta))
     if not (np.isfinite(reach) and reach > 0.0):
@@ -120,7 +123,7 @@ def elliptic_field(stiffness: ArrayLike, reach: float, axis: float = 0.0) -> Fie
 
 
 def _unit(angle: float) -> Array:
-    if not np.isfinite(angle):
+    if not np.isfinite(as_number("angle", angle)):
         raise InputError("angle", "must be finite", value=angle)
     way = np.array([np.cos(angle), np.sin(angle)])
     way[np.abs(way) < 1e-15] = 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.actuators.spread import SiteSpread, draw_spread
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_array, as_number
 
 __all__ = ["PixelLattice", "headings"]
 
@@ -27,8 +29,8 @@ def headings(count: int, first: float = 0.0) -> Array:
            [-1.,  0.],
            [ 0., -1.]])
     """
-    if count < 1:
-        raise InputError("count", "must be at least 1", value=count)
+    if not isinstance(count, Integral) or count < 1:
+        raise InputError("count", "must be a whole number from 1 on", value=count)
     angle = first + 2 * np.pi * np.arange(count) / count
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
@@ -88,8 +90,8 @@ class PixelLattice:
         >>> PixelLattice.rectangular(4, 6, 200e-6, headings(4))
         PixelLattice(24 pixels of 4 actuators)
         """
-        step = np.broadcast_to(np.asarray(pitch, np.float64), (2,))
-        row, column = np.indices((rows, columns)).reshape(2, -1) if rows and columns else ([], [])
+        step = as_array("pitch", np.broadcast_to(pitch, (2,)) if np.ndim(pitch) == 0 else pitch, 2)
+        row, column = _indices(rows, columns)
         centers = np.stack([step[0] * np.asarray(column), step[1] * np.asarray(row)], axis=-1)
         return cls._build(centers, row, column, directions, offsets, step, float(np.prod(step)))
 
@@ -111,8 +113,8 @@ class PixelLattice:
         >>> PixelLattice.hexagonal(4, 6, 200e-6, headings(3))
         PixelLattice(24 pixels of 3 actuators)
         """
-        step = np.broadcast_to(np.asarray(pitch, np.float64), (2,))
-        row, column = np.indices((rows, columns)).reshape(2, -1) if rows and columns else ([], [])
+        step = np.full(2, as_number("pitch", pitch))
+        row, column = _indices(rows, columns)
         shift = 0.5 * (np.asarray(row) % 2)
         height = 0.5 * np.sqrt(3.0) * np.asarray(row)
         centers = pitch * np.stack([np.asarray(column) + shift, height], axis=-1)
@@ -147,13 +149,11 @@ class PixelLattice:
         area: float,
     ) -> PixelLattice:
         """Check the arguments, centre the lattice, place the actuators."""
-        if len(centers) == 0:
-            raise InputError("rows, columns", "must be at least 1")
         if not (np.isfinite(step).all() and (step > 0.0).all()):
             raise InputError("pitch", "must be positive", value=tuple(step))
-        ways = np.array(directions, np.float64)
-        if ways.ndim != 2 or ways.shape[1:] != (2,) or len(ways) == 0:
-            raise InputError("directions", "must have shape (m, 2)", value=ways.shape)
+        ways = as_array("directions", directions, None, 2)
+        if len(ways) == 0:
+            raise InputError("directions", "are missing", remedy="give at least one")
         length = np.linalg.norm(ways, axis=-1, keepdims=True)
         if not (np.isfinite(length).all() and (length > 0.0).all()):
             raise InputError("directions", "must be finite and not zero")
@@ -191,6 +191,14 @@ class PixelLattice:
     def __repr__(self) -> str:
         """Return the numbers of pixels and actuators."""
         return f"PixelLattice({len(self.pixel_centers)} pixels of {len(self.directions)} actuators)"
+
+
+def _indices(rows: int, columns: int) -> NDArray[np.int64]:
+    """Return row and column of every pixel (2, n)."""
+    for name, count in (("rows", rows), ("columns", columns)):
+        if not isinstance(count, Integral) or count < 1:
+            raise InputError(name, "must be a whole number from 1 on", value=count)
+    return np.indices((rows, columns), dtype=np.int64).reshape(2, -1)
 
 
 def by_pixel(sites: NDArray, array: ActuatorArray) -> NDArray:  # type: ignore[type-arg]

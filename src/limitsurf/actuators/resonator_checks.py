@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_number
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -40,7 +41,7 @@ _CHOICES = {
 def check_resonator(resonator: TorsionalResonator) -> None:
     """Raise InputError naming the first field that no resonator can have."""
     for name in (*_POSITIVE, *_NOT_NEGATIVE):
-        value = getattr(resonator, name)
+        value = as_number(name, getattr(resonator, name))
         if name in _POSITIVE and not (np.isfinite(value) and value > 0.0):
             raise InputError(name, "must be positive and finite", value=value)
         if name in _NOT_NEGATIVE and not (np.isfinite(value) and value >= 0.0):
@@ -55,7 +56,7 @@ def check_resonator(resonator: TorsionalResonator) -> None:
 
 
 def _check_shape(resonator: TorsionalResonator) -> None:
-    offset, half = resonator.rod_offset, 0.5 * resonator.grid_width
+    offset, half = as_number("rod_offset", resonator.rod_offset), 0.5 * resonator.grid_width
     if not abs(offset) < half:
         remedy = f"keep it below half the grid width, {half:g} m"
         raise InputError("rod_offset", "puts the rods off the grid", value=offset, remedy=remedy)

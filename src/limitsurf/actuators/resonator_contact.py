@@ -18,6 +18,7 @@ from limitsurf.actuators.resonator_motion import check_status
 from limitsurf.errors import InputError, PartTooHeavy, TipStalled
 from limitsurf.kernels.resonator_balance import STALLED, TIP_STAYS, loaded_motion
 from limitsurf.kernels.tip_contact import ContactLaw, half_angle, release_angle, tip_cells
+from limitsurf.sets.arguments import as_number
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -216,6 +217,8 @@ def floating(
 def _check_arguments(
     resonator: TorsionalResonator, load: float, voltage: float, mu: float, lag: float
 ) -> None:
+    for name, value in (("load", load), ("mu", mu), ("lag", lag)):
+        as_number(name, value)
     if not (np.isfinite(load) and load > 0.0):
         raise InputError("load", "must be positive", value=load)
     if not (np.isfinite(mu) and mu >= 0.0):

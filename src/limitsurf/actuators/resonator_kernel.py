@@ -11,6 +11,7 @@ from limitsurf.kernels.part_height import Tips
 from limitsurf.kernels.resonator_balance import Drive, Grid
 from limitsurf.kernels.rim_torque import RimSide
 from limitsurf.kernels.tip_contact import ContactLaw
+from limitsurf.sets.arguments import as_number
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -33,7 +34,7 @@ def grid_record(resonator: TorsionalResonator) -> Grid:
 
 def drive_record(resonator: TorsionalResonator, voltage: float) -> Drive:
     """Return the strength of the drive of either side."""
-    if not 0.0 < voltage < float("inf"):
+    if not 0.0 < as_number("voltage", voltage) < float("inf"):
         raise InputError("voltage", "must be positive and finite", value=voltage)
     strength = 0.5 * epsilon_0 * resonator.effective_width * float(voltage) ** 2
     return Drive(

@@ -13,6 +13,7 @@ from limitsurf.actuators.resonator_kernel import drive_record, grid_record
 from limitsurf.errors import AmplitudeBeyondClearance, InputError, SolveFailed
 from limitsurf.kernels.resonator_balance import CLEARANCE, NOT_CONVERGED, OK, Motion
 from limitsurf.kernels.resonator_balance import free_motion as solve_free
+from limitsurf.sets.arguments import as_array, as_number
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -102,7 +103,7 @@ def free_motion(
     """
     if frequency is None:
         lag = 0.5 * np.pi
-    elif np.isfinite(frequency) and frequency > 0.0:
+    elif np.isfinite(as_number("frequency", frequency)) and frequency > 0.0:
         lag = _lag_at(resonator, voltage, 2 * np.pi * frequency)
     else:
         raise InputError("frequency", "must be positive", value=frequency)
@@ -161,6 +162,11 @@ def lag_for(resonator: TorsionalResonator, voltage: float, edge_amplitude: float
     edge_amplitude : float
         Of the farther edge [m], below the clearance.
 
+    Raises
+    ------
+    InputError
+        Every lag swings farther, or the swing runs away before it gets as far.
+
     Examples
     --------
     >>> from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -169,18 +175,28 @@ def lag_for(resonator: TorsionalResonator, voltage: float, edge_amplitude: float
     >>> round(1e6 * max(one.levers) * one.floating(1e-12, 75.0, 0.3, lag).tilt_amplitude, 2)
     1.5
     """
-    if not 0.0 < edge_amplitude < resonator.clearance:
+    if not 0.0 < as_number("edge_amplitude", edge_amplitude) < resonator.clearance:
         raise InputError("edge_amplitude", "must lie below the clearance", value=edge_amplitude)
 
     def excess(lag: float) -> float:
         motion = _solve(resonator, voltage, lag)
-        if motion.status == CLEARANCE:
+        if motion.status != OK:
             return resonator.clearance
         return float(max(resonator.levers) * motion.amplitude - edge_amplitude)
 
     if excess(0.5 * np.pi) <= 0.0:
         return 0.5 * np.pi
-    return float(brentq(excess, 1e-3, 0.5 * np.pi, xtol=1e-12))
+    shortest = 1e-3
+    if excess(shortest) > 0.0:
+        remedy = "lower the voltage or allow a larger swing"
+        problem = f"is exceeded at {voltage:g} V whatever the lag"
+        raise InputError("edge_amplitude", problem, value=edge_amplitude, remedy=remedy)
+    lag = float(brentq(excess, shortest, 0.5 * np.pi, xtol=1e-12))
+    if abs(excess(lag)) > 1e-3 * edge_amplitude:
+        problem = f"is not reached at {voltage:g} V: the swing runs away before"
+        remedy = "ask for less, such as half of the clearance"
+        raise InputError("edge_amplitude", problem, value=edge_amplitude, remedy=remedy)
+    return lag
 
 
 def _lag(cotangent: float) -> float:
@@ -201,7 +217,7 @@ def response(
     lags : (n,) float, optional
         Phases of the tilt behind the torque, between 0 and pi [rad].
     """
-    phases = np.linspace(0.02, np.pi - 0.02, 181) if lags is None else np.asarray(lags, float)
+    phases = np.linspace(0.02, np.pi - 0.02, 181) if lags is None else as_array("lags", lags, None)
     if not np.all((phases > 0.0) & (phases < np.pi)):
         raise InputError("lags", "must lie between 0 and pi")
     motions = [_solve(resonator, voltage, float(lag)) for lag in phases]

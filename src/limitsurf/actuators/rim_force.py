@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.constants import epsilon_0
 
+from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_rows
+
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
 
@@ -25,9 +28,10 @@ Array = NDArray[np.float64]
 
 def rim_force(perimeter: float, width: float, gap: float, voltage: ArrayLike) -> Array:
     """Return ``eps0 perimeter width V^2 / (2 gap^2)`` [N]."""
-    return np.asarray(
-        epsilon_0 * perimeter * width * np.asarray(voltage, np.float64) ** 2 / (2 * gap**2)
-    )
+    volts, shape = as_rows("voltage", np.expand_dims(np.asarray(voltage), -1), 1)
+    if not (np.isfinite(volts).all() and (volts >= 0.0).all()):
+        raise InputError("voltage", "must be finite and not negative", value=voltage)
+    return np.asarray(epsilon_0 * perimeter * width * volts.reshape(shape) ** 2 / (2 * gap**2))
 
 
 def plate_force(area: float, gap: float, voltage: ArrayLike) -> Array:
@@ -82,6 +86,8 @@ def force_scaling(resonator: TorsionalResonator, sizes: ArrayLike, voltage: floa
     2.0
     """
     grown = np.asarray(sizes, np.float64)
+    if not (np.isfinite(grown).all() and (grown > 0.0).all()):
+        raise InputError("sizes", "must be positive", value=sizes)
     scale = grown / resonator.grid_width
     force = resonator.vertical_force(voltage) * scale
     return ForceScaling(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_number
 
 __all__ = ["SiteSpread", "draw_spread"]
 
@@ -71,10 +73,12 @@ def draw_spread(
     (0.1, 0.02)
     """
     for name, value in (("strength", strength), ("direction", direction)):
-        if not (np.isfinite(value) and value >= 0.0):
+        if not (np.isfinite(as_number(name, value)) and value >= 0.0):
             raise InputError(name, "must be finite and not negative", value=value)
-    if not 0.0 <= dead <= 1.0:
+    if not 0.0 <= as_number("dead", dead) <= 1.0:
         raise InputError("dead", "must lie between 0 and 1", value=dead)
+    if not isinstance(seed, Integral) or seed < 0:
+        raise InputError("seed", "must be a whole number from 0 on", value=seed)
     rng = np.random.default_rng(seed)
     width = np.sqrt(np.log1p(strength**2))
     return SiteSpread(

@@ -14,6 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from limitsurf.errors import BeyondPullIn, InputError
 from limitsurf.kernels.rim_torque import RimSide, rim_shape
+from limitsurf.sets.arguments import as_number
 
 if TYPE_CHECKING:
     from limitsurf.actuators.torsional_resonator import TorsionalResonator
@@ -29,12 +30,19 @@ def _side(resonator: TorsionalResonator) -> tuple[RimSide, float]:
     return RimSide(lever, resonator.grid_length, resonator.clearance), -1.0 if down else 1.0
 
 
+def _checked(voltage: float) -> float:
+    volts = as_number("voltage", voltage)
+    if not (np.isfinite(volts) and volts >= 0.0):
+        raise InputError("voltage", "must be finite and not negative", value=voltage)
+    return volts
+
+
 def torque(resonator: TorsionalResonator, voltage: float, tilt: float = 0.0) -> float:
     """Return the torque [N m] on the grid at a tilt [rad]; positive raises +x."""
     side, sign = _side(resonator)
-    if not sign * tilt * side.lever < side.gap:
+    if not sign * as_number("tilt", tilt) * side.lever < side.gap:
         raise InputError("tilt", "puts the edge beyond its electrode", value=tilt)
-    strength = 0.5 * epsilon_0 * resonator.effective_width * voltage**2
+    strength = 0.5 * epsilon_0 * resonator.effective_width * _checked(voltage) ** 2
     return float(sign * strength * rim_shape(side, -sign * tilt))
 
 
@@ -73,8 +81,7 @@ def equilibrium(resonator: TorsionalResonator, voltage: float) -> float:
     >>> round(1e9 * equilibrium(one, 50.0) * one.levers[1])  # nm at the edge
     17
     """
-    if not (np.isfinite(voltage) and voltage >= 0.0):
-        raise InputError("voltage", "must be finite and not negative", value=voltage)
+    _checked(voltage)
     share, limit = _pull_in(resonator)
     if voltage >= limit:
         raise BeyondPullIn(voltage, limit)

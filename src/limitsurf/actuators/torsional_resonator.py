@@ -27,7 +27,8 @@ from limitsurf.actuators.resonator_motion import (
 from limitsurf.actuators.rim_force import plate_force, rim_force
 from limitsurf.actuators.rod_torsion import rod_stiffness
 from limitsurf.actuators.static_tilt import equilibrium, pull_in, torque
-from limitsurf.errors import InputError
+from limitsurf.errors import InputError, ModelError
+from limitsurf.sets.arguments import as_rows
 
 if TYPE_CHECKING:
     from limitsurf.contacts.oscillating_contact import OscillatingContact
@@ -125,7 +126,12 @@ class TorsionalResonator:
         ModelError
             Names the file, the field and what to do.
         """
-        return cls(**read_resonator(name_or_path))
+        values = read_resonator(name_or_path)
+        try:
+            return cls(**values)
+        except InputError as error:
+            about = {"value": error.value, "remedy": error.remedy}
+            raise ModelError(name_or_path, error.argument, error.problem, **about) from error
 
     def varied(self, **changes: Any) -> TorsionalResonator:
         """Return the resonator with some fields changed."""
@@ -197,9 +203,10 @@ class TorsionalResonator:
 
     def lifting_voltage(self, force: ArrayLike) -> Any:
         """Return the voltage [V] at which the vertical force is `force` [N]."""
-        if not np.all(np.asarray(force) >= 0.0):
+        loads, shape = as_rows("force", np.expand_dims(np.asarray(force), -1), 1)
+        if not np.all(loads >= 0.0):
             raise InputError("force", "must not be negative", value=force)
-        return _plain(np.sqrt(np.asarray(force, np.float64) / self.vertical_force(1.0)))
+        return _plain(np.sqrt(loads.reshape(shape) / self.vertical_force(1.0)))
 
     def torque(self, voltage: float, tilt: float = 0.0) -> float:
         """Return the torque [N m] of a constant voltage on the side that `static_tilt` raises."""

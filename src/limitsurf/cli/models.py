@@ -89,13 +89,14 @@ def show(
 @models.command()
 def check(
     paths: Annotated[
-        list[Path] | None, typer.Argument(help="TOML files; all shipped models by default.")
+        list[str] | None,
+        typer.Argument(help="Names of models, or TOML files; all shipped models by default."),
     ] = None,
     kind: Kind = None,
 ) -> None:
     """Check model files: schema, units, origins, and that what they describe can be built."""
     load = _loaders()
-    chosen = [(kind or guess_kind(path), path) for path in paths or []]
+    chosen = [found for path in paths or [] for found in _located(path, kind)]
     if not paths:
         chosen = [(k, find_model(k, n)) for k in _kinds(kind) for n in list_models(k)]
     for each, path in chosen:

@@ -6,11 +6,13 @@ A force f at r = (x, y) gives the load ``G f = (f_x, f_y, x f_y - y f_x)``. The 
 
 from __future__ import annotations
 
+from numbers import Integral
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_array
+from limitsurf.sets.arguments import as_array, as_number
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.sets.v_polytope import VPolytope
 
@@ -88,8 +90,8 @@ def polygonal_contact(
         Hausdorff distance of the two in load space: ``radius (1 - cos(pi/n))``, or outside
         ``radius (1/cos(pi/n) - 1)``, times the largest stretch ``sqrt(1 + |r|^2)`` of G.
     """
-    if sides < 3:
-        raise InputError("sides", "must be at least 3", value=sides)
+    if not isinstance(sides, Integral) or sides < 3:
+        raise InputError("sides", "must be a whole number from 3 on", value=sides)
     half = np.pi / sides
     reach = _checked(radius) / (np.cos(half) if outside else 1.0)
     angles = 2 * half * np.arange(sides)
@@ -100,6 +102,6 @@ def polygonal_contact(
 
 
 def _checked(radius: float, name: str = "radius") -> float:
-    if not (np.isfinite(radius) and radius >= 0.0):
+    if not (np.isfinite(as_number(name, radius)) and radius >= 0.0):
         raise InputError(name, "must be at least 0", value=radius)
     return float(radius)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError, OutsideSupports, SolveFailed
 from limitsurf.kernels.load_sharing import share_minimum_norm
-from limitsurf.sets.arguments import as_array
+from limitsurf.sets.arguments import as_array, as_number
 from limitsurf.tolerances import GIVEN_LOAD, SHARED_LOAD
 
 __all__ = ["LoadShare", "share_load"]
@@ -154,9 +154,9 @@ def _arms(places: Array, center: Array) -> _Arms:
 
 
 def _carried(weight: float, lift: float) -> float:
-    if not (np.isfinite(weight) and weight >= 0.0):
+    if not (np.isfinite(as_number("weight", weight)) and weight >= 0.0):
         raise InputError("weight", "must be at least 0", value=weight)
-    if not 0.0 <= lift <= 1.0:
+    if not 0.0 <= as_number("lift", lift) <= 1.0:
         raise InputError(
             "lift", "must lie between 0 and 1", value=lift, remedy="it is a share of the weight"
         )

@@ -15,7 +15,7 @@ from limitsurf.contacts.waveforms import Waveform, read_waveforms
 from limitsurf.errors import InputError
 from limitsurf.kernels.drift import drift_speeds
 from limitsurf.kernels.oscillating import SUMS, tip_sums
-from limitsurf.sets.arguments import as_points
+from limitsurf.sets.arguments import as_number, as_points
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.tolerances import TIP_AT_REST, TIP_WIDTH
 
@@ -277,7 +277,7 @@ class OscillatingContact:
     def _width(self, width: float | None) -> float:
         if width is None:
             return TIP_WIDTH * self.fastest if self.fastest > 0.0 else TIP_AT_REST
-        if not (np.isfinite(width) and width > 0.0):
+        if not (np.isfinite(as_number("width", width)) and width > 0.0):
             raise InputError("width", "must be positive", value=width)
         return float(width)
 
@@ -289,7 +289,10 @@ class OscillatingContact:
 
 
 def _read_friction(mu: ArrayLike) -> Array:
-    friction = np.asarray(mu, dtype=np.float64)
+    try:
+        friction = np.asarray(mu, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("mu", "is no array of numbers", remedy="check its entries") from error
     if not (np.isfinite(friction).all() and (friction >= 0.0).all()):
         raise InputError("mu", "must be at least 0", value=mu)
     return friction

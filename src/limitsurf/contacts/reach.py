@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_number
 from limitsurf.sets.flat_outline import ring_outline
 
 __all__ = ["reach_outline"]
@@ -38,9 +39,9 @@ def reach_outline(tip: _Tip, speed: float, tol: float) -> shapely.Geometry:
     circle ``|u| = speed``. Angles are halved until images halfway lie within ``tol mu mean(N)`` of
     the chords; one side of the tip's line is the mirror image of the other.
     """
-    if not (np.isfinite(speed) and speed >= 0.0):
+    if not (np.isfinite(as_number("speed", speed)) and speed >= 0.0):
         raise InputError("speed", "must be at least 0", value=speed)
-    if not 1e-12 <= tol < 1.0:
+    if not 1e-12 <= as_number("tol", tol) < 1.0:
         raise InputError("tol", "must lie between 1e-12 and 1", value=tol)
     e, size = tip.direction, float(tip.passive_radius)
     frame = np.stack([e, np.array([-e[1], e[0]])])

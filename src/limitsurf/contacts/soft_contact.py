@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.contacts.coulomb import contact_map
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_array
+from limitsurf.sets.arguments import as_array, as_number
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.sets.sections import Section, limit_curve
 
@@ -51,7 +51,7 @@ class SoftContact:
         self.position = as_array("position", position, 2)
         given = {"normal_force": normal_force, "mu": mu, "spin_torque": spin_torque}
         for name, value in given.items():
-            if not (np.isfinite(value) and value >= 0.0):
+            if not (np.isfinite(as_number(name, value)) and value >= 0.0):
                 raise InputError(name, "must be at least 0", value=value)
         self.traction, self.spin_torque = float(mu) * float(normal_force), float(spin_torque)
 

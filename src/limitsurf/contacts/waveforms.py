@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ def read_waveforms(
 
     The last is the largest difference of each halfway between samples, 0 for given samples.
     """
-    if samples != int(samples) or samples < 2:
+    if not isinstance(samples, Integral) or samples < 2:
         raise InputError("samples", "must be a whole number from 2 on", value=samples)
     w = _sampled("tip_velocity", tip_velocity, _count(normal_force, samples))
     N = _sampled("normal_force", normal_force, w.shape[-1])

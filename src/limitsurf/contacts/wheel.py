@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.contacts.coulomb import contact_map
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_array
+from limitsurf.sets.arguments import as_array, as_number
 from limitsurf.sets.ellipsoid import Ellipsoid
 from limitsurf.sets.sections import Section, limit_curve
 
@@ -77,12 +77,12 @@ class Wheel:
         if length == 0.0:
             raise InputError("direction", "is zero", remedy="say where the wheel rolls")
         self.direction = np.asarray(e / length)
-        if not (np.isfinite(radius) and radius > 0.0):
+        if not (np.isfinite(as_number("radius", radius)) and radius > 0.0):
             raise InputError("radius", "must be positive", value=radius)
         self.radius = float(radius)
         self.traction = _positive("mu", mu) * _positive("normal_force", normal_force)
         self.bearing_friction = min(_positive("bearing_friction", bearing_friction), self.traction)
-        if not np.isfinite(torque):
+        if not np.isfinite(as_number("torque", torque)):
             raise InputError("torque", "must be a finite number", value=torque)
         self.torque = float(torque)
 
@@ -126,6 +126,6 @@ class Wheel:
 
 
 def _positive(name: str, value: float) -> float:
-    if not (np.isfinite(value) and value >= 0.0):
+    if not (np.isfinite(as_number(name, value)) and value >= 0.0):
         raise InputError(name, "must be at least 0", value=value)
     return float(value)

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from limitsurf.errors import InputError
 from limitsurf.geometry.outline_files import read_part_file
 from limitsurf.geometry.outlines import as_polygon, directed_edges
+from limitsurf.sets.arguments import as_array
 from limitsurf.units import parse_quantity
 
 __all__ = ["Part"]
@@ -169,7 +170,7 @@ class Part:
 
     def at(self, pose: ArrayLike) -> shapely.Geometry:
         """Return the outline with the centre of mass at a pose ``(x, y, theta)`` [m, m, rad]."""
-        x, y, theta = np.asarray(pose, dtype=np.float64)
+        x, y, theta = as_array("pose", pose, 3)
         turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
         centroid = np.asarray(self.centroid)
         return shapely.transform(

@@ -5,13 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 
-__all__ = ["Metric", "as_array", "as_points", "as_rows", "check_effort", "lifted", "read_metric"]
+__all__ = [
+    "Metric",
+    "as_array",
+    "as_number",
+    "as_points",
+    "as_rows",
+    "check_effort",
+    "lifted",
+    "read_metric",
+]
 
 Array = NDArray[np.float64]
 
@@ -43,6 +53,17 @@ def as_array(name: str, value: ArrayLike, *shape: int | None, copy: bool = True)
     if copy:
         array.setflags(write=False)
     return array
+
+
+def as_number(name: str, value: Any) -> float:
+    """Return a number, perhaps not finite, as a float; InputError for anything else."""
+    try:
+        number = np.asarray(value)
+        if number.ndim == 0 and number.dtype.kind in "biuf":
+            return float(number)
+    except (TypeError, ValueError):
+        pass
+    raise InputError(name, "is no number", value=value, remedy="give one in SI units")
 
 
 def as_points(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ...]]:
