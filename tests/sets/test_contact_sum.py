@@ -626,3 +626,12 @@ def test_contains_and_distance(rng):
     P = S.project(loads)
     assert S.distance(loads) == pytest.approx(P.distance, abs=1e-13)
     assert np.array_equal(S.contains(loads), P.inside)
+
+
+def test_loads_that_are_held_are_inside_also_where_the_certificate_is_loose(rng):
+    S, loads = some(rng)
+    held = S.project(loads[-4:], tol=1e-16)
+    assert np.all(held.status == Status.LOOSE)
+    assert np.all(held.inside)
+    assert np.array_equal(held.point, loads[-4:])
+    assert not np.any(S.project(loads[:4], tol=1e-16).inside)

@@ -1,4 +1,4 @@
-r"""Closest points of contact sums for many loads, and for many small sums at once.
+r"""Closest points of a contact sum for many loads.
 
 Contacts are given about their centroid, where velocities are differences of small numbers; loads,
 metric and twists about the reference point are carried over and back:

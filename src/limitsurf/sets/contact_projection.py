@@ -60,6 +60,11 @@ class ContactProjection(Projection):
     iterations = property(lambda self: self.answers[:, COUNTS].astype(np.int64).reshape(self.shape))
     status = property(lambda self: self.answers[:, STATUSES].astype(np.int64).reshape(self.shape))
 
+    @property
+    def inside(self) -> NDArray[np.bool_]:
+        """Whether the loads are held, also where the certificate is loose."""
+        return np.asarray(~self.twist.any(axis=-1))
+
     def with_pushes(self, pushes: Array) -> ContactProjection:
         """Return the same answers, with mean pushes (N, 2) added to the forces."""
 
