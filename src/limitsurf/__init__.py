@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
     from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
+    from limitsurf.motion.schedule import Schedule as Schedule
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.trajectory import Trajectory as Trajectory
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
@@ -101,6 +102,7 @@ _HOME = {
     "Projection": "sets.projection",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
+    "Schedule": "motion.schedule",
     "Section": "sets.sections",
     "SoftContact": "contacts.soft_contact",
     "SqueezeFunction": "planning.squeeze_function",

@@ -16,7 +16,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.lattice import Lattice
 from limitsurf.kernels.slide import Body, Ground, slide
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.trajectory import Outcome, Trajectory
+from limitsurf.motion.trajectory import EnergyBalance, Outcome, Trajectory
 from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
 __all__ = ["Mode", "TimeScales", "check_lift", "simulate", "time_scales"]
@@ -163,6 +163,7 @@ def simulate(
         tips=table[:, 11].astype(np.int64),
         outcome=outcome,
         worst_error=worst,
+        energy=EnergyBalance(*np.full((5, written), np.nan)),
     )
 
 

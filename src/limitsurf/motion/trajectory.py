@@ -1,20 +1,23 @@
-"""The record of one motion."""
+"""The record of one motion: poses, loads, energies, and what happened when."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import IntEnum, StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
+from limitsurf.errors import InputError
 from limitsurf.kernels.slide import LEFT_ARRAY, NOT_LIFTED, REST, TIME_LIMIT
+from limitsurf.sets.arguments import as_array
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Outcome", "Trajectory"]
+__all__ = ["EnergyBalance", "EventKind", "MotionEvent", "Outcome", "Trajectory"]
 
 Array = NDArray[np.float64]
 
@@ -33,9 +36,83 @@ class Outcome(IntEnum):
         return words[int(self)]
 
 
+class EventKind(StrEnum):
+    """What can happen at an instant."""
+
+    ENTER = "an actuator comes under the part"
+    LEAVE = "an actuator leaves the part"
+    CAPTURE = "an actuator stays on the outline"
+    RELEASE = "an actuator no longer stays on the outline"
+    STICK = "a contact sticks"
+    SLIP = "a contact slips again"
+    SWITCH = "the drive switches"
+    START = "the part starts to move"
+    REST = "the part rests"
+    EDGE = "the part reaches the edge of the array"
+
+
+@dataclass(frozen=True)
+class MotionEvent:
+    """One event of a motion.
+
+    Attributes
+    ----------
+    time : float
+        When [s].
+    kind : EventKind
+        What.
+    where : tuple of int
+        Of what: ``(row, column)`` of an actuator, ``(i,)`` of a contact, empty for the part.
+    """
+
+    time: float
+    kind: EventKind
+    where: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        """Return the event in words."""
+        where = f" {self.where}" if self.where else ""
+        return f"{self.time:.6g} s: {self.kind}{where}"
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyBalance:
+    r"""Where the energy went since the start of a motion, at its recorded times [J].
+
+    An implicit step satisfies, exactly,
+
+    .. math:: T_1 - T_0 + \tfrac12 |v_1 - v_0|_M^2 + \Delta t\,(h_L(-v_1) + v_1^T D v_1)
+              = \Delta t\, F \cdot v_1
+
+    with F the pushes and external loads, L the passive limit surface: the last term on the left
+    but one is friction, and the second what the step itself dissipates.
+
+    Attributes
+    ----------
+    kinetic : (k,) float
+        Kinetic energy T.
+    work : (k,) float
+        Work of pushes and external loads.
+    friction, drag, numerical : (k,) float
+        Dissipated by friction, by viscous drag, and by the implicit steps.
+    """
+
+    kinetic: Array
+    work: Array
+    friction: Array
+    drag: Array
+    numerical: Array
+
+    @property
+    def residual(self) -> Array:
+        """What does not add up, (k,) [J]: zero but for certified errors and rounding."""
+        gained = self.kinetic - self.kinetic[0] - self.work
+        return np.asarray(gained + self.friction + self.drag + self.numerical)
+
+
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Poses of a part over time, with loads and certificates.
+    """Poses of a part over time, with loads, energies and certificates.
 
     Attributes
     ----------
@@ -44,17 +121,21 @@ class Trajectory:
     poses : (k, 3) float
         Poses ``(x, y, theta)`` of the centre of mass, array frame [m, m, rad].
     twists : (k, 3) float
-        Velocities [m/s, m/s, rad/s].
+        Velocities [m/s, m/s, rad/s]; where they jump, those after the jump.
     loads : (k, 3) float
         Loads of the contacts on the part, about its centre of mass [N, N, N m].
     error_bounds : (k,) float
         Certified error of the frictional load [N], moments over the metric's radius of gyration.
     tips : (k,) int
-        Active tips under the part.
+        Contacts that carry the part.
     outcome : Outcome
         How the motion ended.
     worst_error : float
-        Largest error bound of all steps, also of those not recorded, over the part's weight.
+        Largest error bound of all steps, also of those not recorded, over the size of the loads.
+    energy : EnergyBalance
+        Energies at the recorded times.
+    events : tuple of MotionEvent
+        What happened when, in order.
     """
 
     times: Array
@@ -65,6 +146,8 @@ class Trajectory:
     tips: NDArray[np.int64]
     outcome: Outcome
     worst_error: float
+    energy: EnergyBalance
+    events: tuple[MotionEvent, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -77,6 +160,21 @@ class Trajectory:
         last: Array = self.poses[-1]
         return last
 
+    def at(self, times: ArrayLike) -> Array:
+        """Return poses (..., 3) at any times (...) of the motion, interpolated without overshoot.
+
+        Monotone cubics between the recorded frames (F. N. Fritsch, R. E. Carlson, *Monotone
+        piecewise cubic interpolation*, SIAM J. Numer. Anal. 17, 1980); the angle is not wrapped.
+        """
+        wanted = as_array("times", times)
+        if wanted.size and not (self.times[0] <= wanted.min() and wanted.max() <= self.times[-1]):
+            raise InputError(
+                "times", f"must lie in {self.times[0]:g}..{self.times[-1]:g} s", value=times
+            )
+        if len(self.times) == 1:
+            return np.broadcast_to(self.poses[0], (*wanted.shape, 3)).copy()
+        return np.asarray(PchipInterpolator(self.times, self.poses)(wanted))
+
     def to_dataset(self) -> xarray.Dataset:
         """Return the record as an xarray dataset with units."""
         import xarray
@@ -86,12 +184,20 @@ class Trajectory:
             "twist": ["vx", "vy", "omega"],
             "load": ["fx", "fy", "m"],
         }
+        joule = {"units": "J"}
         data = {
             "poses": (("time", "pose"), self.poses, {"units": "m, m, rad"}),
             "twists": (("time", "twist"), self.twists, {"units": "m/s, m/s, rad/s"}),
             "loads": (("time", "load"), self.loads, {"units": "N, N, N m"}),
             "error_bounds": (("time",), self.error_bounds, {"units": "N"}),
             "tips": (("time",), self.tips),
+            "kinetic_energy": (("time",), self.energy.kinetic, joule),
+            "work": (("time",), self.energy.work, joule),
+            "friction_loss": (("time",), self.energy.friction, joule),
+            "drag_loss": (("time",), self.energy.drag, joule),
+            "numerical_loss": (("time",), self.energy.numerical, joule),
+            "event_time": (("event",), np.array([e.time for e in self.events]), {"units": "s"}),
+            "event": (("event",), np.array([e.kind.name for e in self.events], dtype="U8")),
         }
         time = ("time", self.times, {"units": "s"})
         return xarray.Dataset(
