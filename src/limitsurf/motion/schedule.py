@@ -72,7 +72,7 @@ class Schedule(Generic[Drive]):
         >>> Schedule([(0.0, "a"), (1.0, "b")]).pieces(1.0)
         [(0.0, 1.0, 'a')]
         """
-        found = []
+        found: list[tuple[float, float, Drive]] = []
         cycle = 0
         while True:
             shift = 0.0 if self.period is None else cycle * self.period
