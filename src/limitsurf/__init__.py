@@ -52,6 +52,8 @@ if TYPE_CHECKING:
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.schedule import Schedule as Schedule
     from limitsurf.motion.simulate import simulate as simulate
+    from limitsurf.motion.simulate_many import Runs as Runs
+    from limitsurf.motion.simulate_many import simulate_many as simulate_many
     from limitsurf.motion.trajectory import Trajectory as Trajectory
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
@@ -102,6 +104,7 @@ _HOME = {
     "Projection": "sets.projection",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
+    "Runs": "motion.simulate_many",
     "Schedule": "motion.schedule",
     "Section": "sets.sections",
     "SoftContact": "contacts.soft_contact",
@@ -135,6 +138,7 @@ _HOME = {
     "section": "sets.sections",
     "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",
+    "simulate_many": "motion.simulate_many",
     "skewed_squeeze_field": "actuators.force_fields",
     "squeeze_activation": "actuators.activation",
     "squeeze_field": "actuators.force_fields",

@@ -57,9 +57,9 @@ def test_other_seeds_give_other_starts(plan, paper_t, array64, verification):
 
 
 def test_starts_fill_the_disk(plan, paper_t, array64):
-    from limitsurf.planning.verification import _random_starts
+    from limitsurf.motion.starts import random_starts
 
-    starts = _random_starts(20000, 0, 2.0)
+    starts = random_starts(20000, 0, 2.0)
     radii = np.hypot(starts[:, 0], starts[:, 1])
     assert radii.max() < 2.0
     assert np.mean(radii < 1.0) == pytest.approx(0.25, abs=0.01)

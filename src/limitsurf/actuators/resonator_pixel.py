@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.actuators.torsional_resonator import TorsionalResonator
+from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import ModelError
 from limitsurf.modelfiles import Model, Sourced, find_model, load_model, number
 
@@ -83,6 +84,17 @@ class ResonatorPixel:
         lag = self.resonator.lag_for(voltage, 0.5 * self.resonator.clearance)
         part = self.resonator.floating(load, voltage, self.friction, lag)
         return replace(self, offset_fraction=abs(part.offset_fraction), residual_fraction=0.0)
+
+    def tip(self, load: float, voltage: float, samples: int = 64) -> OscillatingContact:
+        """Return how a running tip moves under a load [N], computed as in `running`.
+
+        Examples
+        --------
+        >>> load_pixel("resonator1994").tip(3.1e-8, 50.0).offset.round(10)
+        array([-1.5e-09,  0.0e+00])
+        """
+        lag = self.resonator.lag_for(voltage, 0.5 * self.resonator.clearance)
+        return self.resonator.contact(load, voltage, self.friction, lag=lag, samples=samples)
 
     def __repr__(self) -> str:
         """Return the pitch and the number of actuators."""

@@ -1,15 +1,15 @@
-r"""A part on an activated array, step by step, contact by contact.
+r"""A part on an activated array in implicit steps, fixed or adaptive.
 
-Each implicit step solves, for the twist v at its end,
+Each step solves, for the twist v at its end,
 
 .. math::
     v = \arg\min_v\; \tfrac12 (v-v_0)^T M (v-v_0)
-        + \Delta t \left( h_L(-v) + \tfrac12 v^T D v \right),
+        + \Delta t \left( h_L(-v) + \tfrac12 v^T D v - F \cdot v \right),
 
 the closest-point problem of ``contact_sum`` with metric :math:`(M/\Delta t + D)^{-1}` and load
-:math:`\sum G_i a_i + M v_0/\Delta t`, where :math:`a_i` are the mean pushes of the tips. M = 0 is
-quasi-static motion. The weight is shared equally by the active tips under the part; a tip at the
-outline carries its share of that (``lattice``).
+:math:`F + \sum G_i a_i + M v_0/\Delta t`, where F is the external load and :math:`a_i` are the mean
+pushes of the tips. M = 0 is quasi-static motion. The weight is shared equally by the active tips
+under the part (`tips`).
 """
 
 from __future__ import annotations
@@ -30,22 +30,60 @@ from limitsurf.kernels.contact_problem import (
     Problem,
     new_best,
     new_setting,
-    second_moments,
 )
-from limitsurf.kernels.contact_sum import solve_contact_sum
+from limitsurf.kernels.contact_sum import COLD, solve_contact_sum
 from limitsurf.kernels.contact_totals import new_table
-from limitsurf.kernels.lattice import Cover, Lattice, covered_sites, new_cover
+from limitsurf.kernels.lattice import Lattice, holds
+from limitsurf.kernels.load_table import VARIES, Load, load_at
+from limitsurf.kernels.row_spans import Spans, no_spans
+from limitsurf.kernels.tips import (
+    COUNT,
+    PUSH_M,
+    PUSH_X,
+    PUSH_Y,
+    SHARE,
+    Tips,
+    moments_of,
+    move_tips,
+    new_tips,
+    tip_data,
+)
+from limitsurf.kernels.vectors import Vector, along
 
-__all__ = ["LEFT_ARRAY", "NOT_LIFTED", "REST", "TIME_LIMIT", "Body", "Ground", "slide"]
+__all__ = [
+    "ENERGIES",
+    "FRAME",
+    "HEAVIEST",
+    "LEFT_ARRAY",
+    "NEXT_FRAME",
+    "NOT_LIFTED",
+    "POSE",
+    "REST",
+    "STEPS",
+    "TIME",
+    "TIME_LIMIT",
+    "TWIST_NOW",
+    "WORST",
+    "Body",
+    "Ground",
+    "Pace",
+    "new_motion",
+    "slide",
+]
 
 TIME_LIMIT, REST, LEFT_ARRAY, NOT_LIFTED = 0, 1, 2, 3
-_IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+# numbers of a motion: where it is, with what it warm-starts, and what it has summed up
+TIME, POSE, TWIST_NOW, START, WIDTH, LOAD_NOW, SLACK, ENERGIES = 0, 1, 4, 7, 10, 11, 14, 15
+WORST, HEAVIEST, STEP, STEPS, NEXT_FRAME, _MOTION = 19, 20, 21, 22, 23, 24
+FRAME = 17  # time, pose, twist, load, bound, tips, kinetic, work, friction, drag, numerical
+_SHORTEST = 1e-6  # steps are not made shorter than that, relative to the longest
 
 
 class Body(NamedTuple):
     """The part: edges (E, 4) about its centre of mass, weight, mass and drag for (x, y, theta).
 
-    `reach` is its circumradius.
+    `reach` is its circumradius, `load` the external load on it in the course of time.
     """
 
     reach: float
@@ -53,222 +91,290 @@ class Body(NamedTuple):
     weight: float
     mass: Floats
     drag: Floats
+    load: Load
 
 
 class Ground(NamedTuple):
-    """The array: its lattice of sites, where they push, and what a tip does.
+    """The array: its lattice of sites, and what a tip does.
 
     `push` and `grip` are the mean push and the radius of the friction disk of a tip, per normal
     force; `lift` is the largest normal force a tip can carry.
     """
 
     lattice: Lattice
-    directions: Floats
     push: float
     grip: float
     lift: float
 
 
-class Step(NamedTuple):
-    """What a step computes: loads of the contacts, tips' scaled positions and friction radii."""
+class Pace(NamedTuple):
+    """The longest step dt [s] and the local error that shortens it, over the reach; or 0: fixed.
+
+    `tol` is the tolerance of the certificates. The part rests when no load on it is certified, or
+    when neither its speed nor the speed that the load would give it against drag alone reaches
+    `rest_speed` [m/s].
+    """
+
+    dt: float
+    error: float
+    tol: float
+    rest_speed: float
+
+
+class Work(NamedTuple):
+    """What a step works with: edges in place, tips, an answer of the contact sum and its room."""
 
     edges: Floats
-    data: Floats
-    load: Floats
+    tips: Tips
     best: Floats
     table: Floats
     none: Floats
 
 
 @compiled
-def _place(edges: Floats, pose: Floats, out: Floats) -> None:
-    """Move the edges to a pose."""
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+def new_motion(pose: Floats, twist: Floats) -> Floats:
+    """Return the numbers of a motion that begins."""
+    motion = np.zeros(_MOTION)
+    motion[POSE : POSE + 3] = pose
+    motion[TWIST_NOW : TWIST_NOW + 3] = twist
+    motion[WIDTH] = COLD
+    return motion
+
+
+@compiled
+def _place(edges: Floats, motion: Floats, out: Floats) -> None:
+    """Move the edges to the pose."""
+    x, y, theta = motion[POSE], motion[POSE + 1], motion[POSE + 2]
+    cos, sin = math.cos(theta), math.sin(theta)
     for i in range(edges.shape[0]):
         for k in (0, 2):
-            out[i, k] = pose[0] + cos * edges[i, k] - sin * edges[i, k + 1]
-            out[i, k + 1] = pose[1] + sin * edges[i, k] + cos * edges[i, k + 1]
+            out[i, k] = x + cos * edges[i, k] - sin * edges[i, k + 1]
+            out[i, k + 1] = y + sin * edges[i, k] + cos * edges[i, k + 1]
 
 
 @compiled
-def _on_array(edges: Floats, lattice: Lattice) -> bool:
-    """Return whether all vertices lie over the cells of the sites."""
-    half = 0.5 * lattice.pitch
-    rows, columns = lattice.active.shape
-    left, bottom = lattice.origin_x - half, lattice.origin_y - half
-    right, top = left + columns * lattice.pitch, bottom + rows * lattice.pitch
-    for i in range(edges.shape[0]):
-        if not (left <= edges[i, 0] <= right and bottom <= edges[i, 1] <= top):
-            return False
-    return True
+def _find_tips(
+    body: Body, ground: Ground, motion: Floats, spans: Spans, work: Work
+) -> tuple[int, Spans]:
+    """Bring the tips up to date; return TIME_LIMIT, or why there is no step, and the spans."""
+    _place(body.edges, motion, work.edges)
+    if not holds(ground.lattice, work.edges):
+        return LEFT_ARRAY, spans
+    x, y = motion[POSE], motion[POSE + 1]
+    spans = move_tips(ground.lattice, work.edges, x, y, work.tips, spans)
+    normal = _normal(body, work.tips)
+    motion[HEAVIEST] = max(motion[HEAVIEST], normal)
+    return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, spans
 
 
 @compiled
-def _slow(body: Body, twist: Floats, load: Floats, speed: float) -> bool:
-    """Return whether the part, rim included, moves and will move slower than `speed`."""
-    moving = math.hypot(twist[0], twist[1]) + body.reach * abs(twist[2])
+def _normal(body: Body, tips: Tips) -> float:
+    """Return the weight on a tip of share 1."""
+    return body.weight / tips.sums[SHARE] if tips.numbers[COUNT] > 0 else np.inf
+
+
+@compiled
+def _slow(body: Body, speed: float, v: Vector, load: Vector) -> bool:
+    """Return whether the part, rim included, moves and will move slower than `speed`.
+
+    `load` is what all loads but drag add up to.
+    """
+    if not math.hypot(v[0], v[1]) + body.reach * abs(v[2]) < speed:
+        return False
     terminal = math.hypot(load[0], load[1]) / body.drag[0]
-    terminal += body.reach * abs(load[2]) / body.drag[2]
-    return bool(max(moving, terminal) < speed)
+    return bool(terminal + body.reach * abs(load[2]) / body.drag[2] < speed)
+
+
+@compiled
+def _solve(
+    body: Body, ground: Ground, pace: Pace, motion: Floats, dt: float, work: Work
+) -> tuple[bool, float, float, float]:
+    """Overwrite the twist by that of the step; return whether it rests, and three works.
+
+    The works of pushes and external load, against friction, and against drag are per second.
+    """
+    tips, best = work.tips, work.best
+    normal = _normal(body, tips)
+    dx, dy = motion[POSE] - tips.anchor[0], motion[POSE + 1] - tips.anchor[1]
+    pushes, v0 = ground.push * normal, motion[TWIST_NOW : TWIST_NOW + 3].copy()
+    fx, fy = pushes * tips.sums[PUSH_X], pushes * tips.sums[PUSH_Y]
+    m = pushes * tips.sums[PUSH_M] - dx * fy + dy * fx
+    external, _ = load_at(body.load, motion[TIME] + dt)
+    drive = along((fx, fy, m), 1.0, external)
+    q = body.mass / dt + body.drag
+    cx, cy = drive[0] + body.mass[0] * v0[0] / dt, drive[1] + body.mass[1] * v0[1] / dt
+    cm = drive[2] + body.mass[2] * v0[2] / dt
+    rx, ry, rm = 0.0, 0.0, 0.0
+    vx, vy, w, bound = cx / q[0], cy / q[1], cm / q[2], 0.0
+    if ground.grip > 0.0:
+        # about the anchor, with the friction of a tip of share 1 as the unit of force
+        unit = ground.grip * normal
+        c = cx / unit, cy / unit, (cm + dx * cy - dy * cx) / unit
+        a, b, d = 1.0 / math.sqrt(q[0]), 1.0 / math.sqrt(q[1]), 1.0 / math.sqrt(q[2])
+        C = (a, 0.0, 0.0), (0.0, b, 0.0), (d * dy, -d * dx, d)
+        contacts = Contacts(tip_data(tips), 1, None)
+        n = contacts.data.shape[1]
+        setting = new_setting(n, moments_of(tips), C, c, math.sqrt(0.5 * (a * a + b * b)), pace.tol)
+        start = motion[START], motion[START + 1], motion[START + 2]
+        v = start[0] + start[2] * dy, start[1] - start[2] * dx, start[2]
+        problem = Problem(contacts, work.table[: -(-n // BLOCK) + 1], setting)
+        solve_contact_sum(problem, best, v, motion[WIDTH], work.none)
+        w = best[WITNESS + 2]
+        motion[START], motion[START + 1] = best[WITNESS] - w * dy, best[WITNESS + 1] + w * dx
+        motion[START + 2], motion[WIDTH] = w, best[EPS]
+        w = unit * best[TWIST + 2]
+        vx, vy = unit * best[TWIST] - w * dy, unit * best[TWIST + 1] + w * dx
+        rx, ry = unit * best[LOAD], unit * best[LOAD + 1]
+        rm = unit * best[LOAD + 2] - dx * ry + dy * rx
+        bound = unit * (best[BOUND] + setting.rounding) * math.sqrt(q[0])
+    motion[TWIST_NOW], motion[TWIST_NOW + 1], motion[TWIST_NOW + 2] = vx, vy, w
+    motion[LOAD_NOW], motion[LOAD_NOW + 1], motion[LOAD_NOW + 2] = fx - rx, fy - ry, m - rm
+    left = along(drive, -1.0, (rx, ry, rm))
+    motion[SLACK] = bound
+    motion[WORST] = max(motion[WORST], bound / body.weight)
+    rests = vx == vy == w == 0.0 and not (np.any(v0) and np.any(body.mass))
+    rests = body.load.kind != VARIES and (rests or _slow(body, pace.rest_speed, (vx, vy, w), left))
+    drag = body.drag[0] * vx * vx + body.drag[1] * vy * vy + body.drag[2] * w * w
+    worked = drive[0] * vx + drive[1] * vy + drive[2] * w
+    return rests, worked, rx * vx + ry * vy + rm * w, drag
+
+
+@compiled
+def _take(body: Body, ground: Ground, pace: Pace, motion: Floats, dt: float, work: Work) -> bool:
+    """Solve for a step, add to the energies and move on; return whether the part rests instead."""
+    v0 = motion[TWIST_NOW : TWIST_NOW + 3].copy()
+    rests, worked, friction, drag = _solve(body, ground, pace, motion, dt, work)
+    if rests:
+        return True
+    lost = 0.0
+    for k in range(3):
+        lost += 0.5 * body.mass[k] * (motion[TWIST_NOW + k] - v0[k]) ** 2
+        motion[POSE + k] += dt * motion[TWIST_NOW + k]
+    motion[ENERGIES] += dt * worked
+    motion[ENERGIES + 1] += dt * friction
+    motion[ENERGIES + 2] += dt * drag
+    motion[ENERGIES + 3] += lost
+    motion[TIME] += dt
+    return False
+
+
+@compiled
+def _take_adaptively(
+    body: Body,
+    ground: Ground,
+    pace: Pace,
+    motion: Floats,
+    most: float,
+    spans: Spans,
+    work: Work,
+) -> tuple[bool, int, Spans]:
+    """Take two half steps that differ little from a whole one, of at most `most`.
+
+    Return whether the part rests instead, the status, and the spans.
+    """
+    before = motion.copy()
+    while True:
+        dt = min(motion[STEP], most)
+        if _take(body, ground, pace, motion, dt, work):
+            return True, TIME_LIMIT, spans
+        whole = motion[POSE : POSE + 3].copy()
+        heaviest, worst, width = motion[HEAVIEST], motion[WORST], motion[WIDTH]
+        motion[:] = before
+        motion[HEAVIEST], motion[WORST], motion[WIDTH] = heaviest, worst, width
+        if _take(body, ground, pace, motion, 0.5 * dt, work):
+            return True, TIME_LIMIT, spans
+        status, spans = _find_tips(body, ground, motion, spans, work)
+        if status == TIME_LIMIT:
+            _take(body, ground, pace, motion, 0.5 * dt, work)
+        error = math.hypot(motion[POSE] - whole[0], motion[POSE + 1] - whole[1])
+        error += body.reach * abs(motion[POSE + 2] - whole[2])
+        better = 0.9 * math.sqrt(pace.error * body.reach / max(error, 1e-300))
+        next_step = min(max(dt * min(max(better, 0.2), 2.0), _SHORTEST * pace.dt), pace.dt)
+        if status != TIME_LIMIT or better >= 0.9 or dt <= _SHORTEST * pace.dt:
+            motion[STEP] = next_step
+            return False, status, spans
+        motion[:] = before
+        motion[STEP] = next_step
+        status, spans = _find_tips(body, ground, motion, spans, work)
 
 
 @compiled
 def slide(
     body: Body,
     ground: Ground,
-    pose: Floats,
-    twist: Floats,
-    dt: float,
+    pace: Pace,
+    motion: Floats,
+    until: float,
     steps: int,
-    stride: int,
-    tol: float,
-    rest_speed: float,
+    every: float,
+    final: bool,
     frames: Floats,
-) -> tuple[int, int, int, float, float]:
-    """Move a part until it rests, leaves, sinks or the steps are used up.
+) -> tuple[int, int, bool]:
+    """Move a part until it rests, leaves, sinks, the time is up, or the steps are.
 
     Parameters
     ----------
-    body, ground : Body, Ground
-        What moves on what.
-    pose, twist : (3,) float
-        Start; overwritten with the end.
-    dt, steps : float, int
-        Time step [s] and their largest number.
-    stride : int
-        Every how many steps a row of `frames` is written.
-    tol : float
-        Tolerance of the certificates.
-    rest_speed : float
-        The part rests when no load on it is certified, or when neither its speed nor the speed
-        that the load would give it against drag alone reaches this [m/s].
-    frames : (K, 12) float
-        Output rows ``time, pose, twist, load, error bound, tips``; K > steps // stride + 1.
+    body, ground, pace : Body, Ground, Pace
+        What moves on what, in which steps.
+    motion : (24,) float
+        From `new_motion`; goes on where it is, and ends where the motion does.
+    until, steps : float, int
+        Time limit [s], and steps after which to return for now.
+    every : float
+        Time between frames [s].
+    final : bool
+        Whether to write a frame when the time is up.
+    frames : (K, FRAME) float
+        Output rows ``time, pose, twist, load, error bound, tips, kinetic, work, friction, drag,
+        numerical``; twist and load are those of the step that follows, the energies those so far.
+        Without rows none is written.
 
     Returns
     -------
-    status, steps, rows : int
-        One of TIME_LIMIT, REST, LEFT_ARRAY, NOT_LIFTED; steps taken; rows written.
-    worst : float
-        Largest certified error bound, relative to the weight.
-    heaviest : float
-        Largest normal force on a tip.
+    status, rows : int
+        One of TIME_LIMIT, REST, LEFT_ARRAY, NOT_LIFTED; rows written.
+    over : bool
+        False if only the steps were used up.
     """
-    cover = new_cover(ground.lattice.active)
-    sites = cover.share.size
-    work = Step(
-        np.empty_like(body.edges),
-        np.empty(3 * sites),
-        np.zeros(3),
-        new_best(),
-        new_table(sites),
-        np.empty((0, 2)),
-    )
-    worst = heaviest = bound = 0.0
-    step = written = 0
+    tips = new_tips(ground.lattice, body.reach)
+    room = new_table(tips.rows.shape[0]) if ground.grip > 0.0 else new_table(0)
+    work = Work(np.empty_like(body.edges), tips, new_best(), room, np.empty((0, 2)))
+    if motion[STEP] == 0.0:
+        motion[STEP] = pace.dt
+    spans, taken, written, early = no_spans(), 0, 0, 1e-9 * pace.dt
     while True:
-        status, count, normal = _find_tips(body, ground, pose, work.edges, cover)
-        heaviest = max(heaviest, normal)
-        if status == TIME_LIMIT and step < steps:
-            resting, bound = _solve(body, ground, pose, twist, dt, tol, normal, count, cover, work)
-            worst = max(worst, bound / body.weight)
-            if resting or _slow(body, twist, work.load, rest_speed):
-                status = REST
-        over = status != TIME_LIMIT or step == steps
-        if over or step % stride == 0:
-            frame = frames[written]
-            frame[0] = step * dt
-            frame[1:4] = pose
-            frame[4:7] = twist
-            frame[7:10] = work.load
-            frame[10] = bound
-            frame[11] = count
+        status, spans = _find_tips(body, ground, motion, spans, work)
+        left = until - motion[TIME]
+        over = status != TIME_LIMIT or left <= early
+        before, rests = motion.copy(), False
+        if not over:
+            if pace.error > 0.0:
+                rests, status, spans = _take_adaptively(
+                    body, ground, pace, motion, left, spans, work
+                )
+            else:
+                rests = _take(body, ground, pace, motion, min(pace.dt, left), work)
+            taken += 1
+            status = REST if rests else status
+        stop = over or rests or taken >= steps
+        due = before[TIME] >= motion[NEXT_FRAME] - early or rests or (over and final)
+        due = due or status not in (TIME_LIMIT, REST)
+        if due and written < frames.shape[0]:
+            _write(body, before, motion, tips.numbers[COUNT], frames[written])
             written += 1
-        if over:
-            return status, step, written, worst, heaviest
-        pose += dt * twist
-        step += 1
+            motion[NEXT_FRAME] = every * (math.floor((before[TIME] + early) / every) + 1.0)
+        if stop:
+            motion[STEPS] += taken
+            return status, written, over or rests
 
 
 @compiled
-def _find_tips(
-    body: Body, ground: Ground, pose: Floats, edges: Floats, cover: Cover
-) -> tuple[int, int, float]:
-    """Return status, number of tips under the part, and the weight on a tip of share 1."""
-    _place(body.edges, pose, edges)
-    if not _on_array(edges, ground.lattice):
-        return LEFT_ARRAY, 0, 0.0
-    count = covered_sites(edges, ground.lattice, cover)
-    normal = body.weight / cover.share[:count].sum() if count > 0 else np.inf
-    return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, count, normal
-
-
-@compiled
-def _solve(
-    body: Body,
-    ground: Ground,
-    pose: Floats,
-    twist: Floats,
-    dt: float,
-    tol: float,
-    normal: float,
-    count: int,
-    cover: Cover,
-    work: Step,
-) -> tuple[bool, float]:
-    """Overwrite the twist by that of the implicit step; return whether it rests, and the bound.
-
-    Scaled by rho, the metric's radius of gyration, and by the first entry of the quadratic term,
-    the metric is the identity.
-    """
-    quadratic = body.mass / dt + body.drag
-    rho = math.sqrt(quadratic[2] / quadratic[0])
-    _sum_contacts(ground, pose, rho, normal, count, cover, work)
-    momentum = body.mass * twist / dt
-    scaled = work.load + momentum
-    scaled[2] /= rho
-    best = work.best
-    contacts = Contacts(work.data[: 3 * count].reshape(3, count), 1, None)
-    table = work.table[: -(-count // BLOCK) + 1]
-    c = scaled[0], scaled[1], scaled[2]
-    setting = new_setting(count, second_moments(contacts), _IDENTITY, c, 1.0, tol)
-    v = best[WITNESS], best[WITNESS + 1], best[WITNESS + 2]
-    solve_contact_sum(Problem(contacts, table, setting), best, v, best[EPS], work.none)
-    twist[:] = 0.0
-    sticks = True
-    for k in range(3):
-        sticks = sticks and best[TWIST + k] == 0.0
-    if not sticks:
-        twist[:] = (scaled - best[LOAD : LOAD + 3]) / quadratic[0]
-    twist[2] /= rho
-    friction = -best[LOAD : LOAD + 3]
-    friction[2] *= rho
-    work.load[:] += friction
-    return sticks and not np.any(momentum), best[BOUND] + setting.rounding
-
-
-@compiled
-def _sum_contacts(
-    ground: Ground,
-    pose: Floats,
-    rho: float,
-    normal: float,
-    count: int,
-    cover: Cover,
-    work: Step,
-) -> None:
-    """Set the tips' scaled positions and friction radii, and sum their pushes to a load."""
-    lattice = ground.lattice
-    work.load[:] = 0.0
-    for i in range(count):
-        r, c = cover.rows[i], cover.columns[i]
-        rx = lattice.origin_x + lattice.pitch * c - pose[0]
-        ry = lattice.origin_y + lattice.pitch * r - pose[1]
-        carried = normal * cover.share[i]
-        fx = ground.push * carried * ground.directions[r, c, 0]
-        fy = ground.push * carried * ground.directions[r, c, 1]
-        work.load[0] += fx
-        work.load[1] += fy
-        work.load[2] += rx * fy - ry * fx
-        work.data[i], work.data[count + i] = rx / rho, ry / rho
-        work.data[2 * count + i] = ground.grip * carried
+def _write(body: Body, at: Floats, after: Floats, count: int, frame: Floats) -> None:
+    """Write a frame: time and pose of `at`, twist and load of the step that led to `after`."""
+    frame[0:4] = at[TIME : POSE + 3]
+    frame[4:7] = after[TWIST_NOW : TWIST_NOW + 3]
+    frame[7:10] = after[LOAD_NOW : LOAD_NOW + 3]
+    frame[10], frame[11] = after[SLACK], count
+    v = at[TWIST_NOW : TWIST_NOW + 3]
+    frame[12] = 0.5 * np.sum(body.mass * v * v)
+    frame[13:17] = at[ENERGIES : ENERGIES + 4]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,10 +30,17 @@ class Outcome(IntEnum):
     REST = REST
     LEFT_ARRAY = LEFT_ARRAY
     NOT_LIFTED = NOT_LIFTED
+    INTERRUPTED = 4
 
     def __str__(self) -> str:
         """Return the outcome in words."""
-        words = ("still moving at the time limit", "at rest", "left the array", "not lifted")
+        words = (
+            "still moving at the time limit",
+            "at rest",
+            "left the array",
+            "not lifted",
+            "interrupted",
+        )
         return words[int(self)]
 
 
@@ -166,7 +174,7 @@ class Trajectory:
         Monotone cubics between the recorded frames (F. N. Fritsch, R. E. Carlson, *Monotone
         piecewise cubic interpolation*, SIAM J. Numer. Anal. 17, 1980); the angle is not wrapped.
         """
-        wanted = as_array("times", times)
+        wanted = as_array("times", times, *np.shape(times))
         if wanted.size and not (self.times[0] <= wanted.min() and wanted.max() <= self.times[-1]):
             raise InputError(
                 "times", f"must lie in {self.times[0]:g}..{self.times[-1]:g} s", value=times
@@ -190,7 +198,7 @@ class Trajectory:
             "twists": (("time", "twist"), self.twists, {"units": "m/s, m/s, rad/s"}),
             "loads": (("time", "load"), self.loads, {"units": "N, N, N m"}),
             "error_bounds": (("time",), self.error_bounds, {"units": "N"}),
-            "tips": (("time",), self.tips),
+            "tips": (("time",), self.tips.astype(np.int32)),
             "kinetic_energy": (("time",), self.energy.kinetic, joule),
             "work": (("time",), self.energy.work, joule),
             "friction_loss": (("time",), self.energy.friction, joule),
@@ -203,6 +211,13 @@ class Trajectory:
         return xarray.Dataset(
             data, coords={"time": time, **axes}, attrs={"outcome": str(self.outcome)}
         )
+
+    def save(self, path: str | Path) -> None:
+        """Write the record to a NetCDF file, as a whole: a broken write leaves the one before."""
+        path = Path(path)
+        unfinished = path.with_name(path.name + ".part")
+        self.to_dataset().to_netcdf(unfinished, engine="scipy")
+        unfinished.replace(path)
 
     def __repr__(self) -> str:
         """Return duration and outcome."""

@@ -15,7 +15,10 @@ from limitsurf.actuators.activation import Activation, Method, squeeze_activatio
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.motion.simulate import Mode, check_lift, simulate
+from limitsurf.motion.engines import Mode
+from limitsurf.motion.simulate import simulate
+from limitsurf.motion.starts import check_room, random_starts
+from limitsurf.motion.time_scales import check_lift
 from limitsurf.motion.trajectory import Outcome, Trajectory
 from limitsurf.planning.alignment import AlignmentPlan
 
@@ -216,7 +219,7 @@ def verify_alignment(
     offset = 0.5 * part.circumradius if start_offset is None else start_offset
     check_room(part, drive, offset)
     activations = tuple(squeeze_activation(drive, line, method=method) for line in plan.lines)
-    starts = _random_starts(samples, seed, offset)
+    starts = random_starts(samples, seed, offset)
     runs = Parallel(n_jobs=jobs, prefer="threads", return_as="generator")(
         delayed(_execute)(part, activations, start, mode, 1) for start in starts
     )
@@ -235,27 +238,6 @@ def verify_alignment(
         outcomes=np.array([r[2] for r in records], dtype=np.int64),
         worst_errors=np.array([r[3] for r in records]),
     )
-
-
-def check_room(part: Part, array: ActuatorArray, start_offset: float) -> None:
-    """Raise unless the array holds the part's circumscribed circle at every start."""
-    if not (np.isfinite(start_offset) and start_offset >= 0.0):
-        raise InputError("start_offset", "must be at least 0 m", value=start_offset)
-    room = 0.5 * min(array.width, array.height)
-    if room < part.circumradius + start_offset:
-        raise InputError(
-            "array",
-            f"{array.name} leaves {1e3 * room:.4g} mm around its centre, but the part needs "
-            f"{1e3 * part.circumradius:.4g} mm and its start offsets {1e3 * start_offset:.4g} mm",
-            remedy="take a larger array or a smaller start offset",
-        )
-
-
-def _random_starts(samples: int, seed: int, offset: float) -> Array:
-    radius, angle, theta = np.random.default_rng(seed).random((3, samples))
-    radius = offset * np.sqrt(radius)
-    angle = 2 * np.pi * angle
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), 2 * np.pi * theta])
 
 
 def _execute(

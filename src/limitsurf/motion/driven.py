@@ -1,0 +1,176 @@
+"""A part on an array that is driven by one activation after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from limitsurf.actuators.activation import Activation
+from limitsurf.actuators.actuator_array import ActuatorArray
+from limitsurf.errors import InputError
+from limitsurf.kernels.slide import HEAVIEST, STEPS, TIME, TWIST_NOW, WORST, new_motion
+from limitsurf.motion.schedule import Schedule
+from limitsurf.motion.time_scales import refuse_heavy
+from limitsurf.motion.trajectory import (
+    EnergyBalance,
+    EventKind,
+    MotionEvent,
+    Outcome,
+    Trajectory,
+)
+
+__all__ = ["Driven", "DrivenMotion", "Stepper", "Watch"]
+
+Array = NDArray[np.float64]
+Driven = Activation | Schedule[Activation] | Callable[[float], Activation]
+
+#: Called now and then with the time [s], and with the record so far if the motion is interrupted.
+Watch = Callable[[float, Trajectory | None], None]
+
+
+class Stepper(Protocol):
+    """What moves a part on one activation."""
+
+    def advance(
+        self, activation: Activation, motion: Array, until: float, final: bool
+    ) -> tuple[int, Array, bool]:
+        """Move the numbers of a motion on (`kernels.slide`) for a second or two, at most `until`.
+
+        Return the status, frames (k, FRAME), and whether the motion is over on this activation.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenMotion:
+    """Motions on an array, driven by one activation after the other.
+
+    Attributes
+    ----------
+    stepper : Stepper
+        What moves the part.
+    drive : Activation, Schedule of activations, or callable
+        What runs when; a callable is asked at the beginning of every step.
+    duration, step : float
+        Time limit, and how often to ask a callable [s].
+    """
+
+    stepper: Stepper
+    drive: Driven
+    duration: float
+    step: float
+
+    def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
+        """Return the motion from a pose and a twist."""
+        motion, log = new_motion(pose, twist), _Log()
+        try:
+            outcome, array = self._run_all(motion, log, watch)
+        except BaseException:
+            if watch is not None and log.rows:
+                watch(float(motion[TIME]), log.trajectory(motion, Outcome.INTERRUPTED))
+            raise
+        if outcome is Outcome.NOT_LIFTED and np.isfinite(motion[HEAVIEST]):
+            refuse_heavy(float(motion[HEAVIEST]), array)
+        if outcome is Outcome.LEFT_ARRAY and motion[STEPS] == 0.0:
+            raise InputError(
+                "pose",
+                "puts the part over the edge of the array",
+                value=tuple(pose.tolist()),
+                remedy="move it or take a larger array",
+            )
+        return log.trajectory(motion, outcome)
+
+    def _run_all(
+        self, motion: Array, log: _Log, watch: Watch | None
+    ) -> tuple[Outcome, ActuatorArray]:
+        """Move on all activations; return how it ended, and where."""
+        last, outcome = None, Outcome.TIME_LIMIT
+        for activation, until, final in _pieces(self.drive, self.duration, self.step):
+            begin = float(motion[TIME])
+            if last is not None and activation is not last:
+                log.add(begin, EventKind.SWITCH)
+            last = activation
+            outcome = self._run(activation, motion, until, final, log, watch)
+            log.tell(outcome, begin, float(motion[TIME]))
+            if outcome in (Outcome.LEFT_ARRAY, Outcome.NOT_LIFTED):
+                break
+            if outcome is Outcome.REST and not final:
+                motion[TIME] = until
+                motion[TWIST_NOW : TWIST_NOW + 3] = 0.0
+        assert last is not None
+        return outcome, last.array
+
+    def _run(
+        self,
+        activation: Activation,
+        motion: Array,
+        until: float,
+        final: bool,
+        log: _Log,
+        watch: Watch | None,
+    ) -> Outcome:
+        over, status = False, int(Outcome.TIME_LIMIT)
+        while not over:
+            status, frames, over = self.stepper.advance(activation, motion, until, final)
+            log.rows.append(frames)
+            if watch is not None:
+                watch(float(motion[TIME]), None)
+        return Outcome(status)
+
+
+@dataclass
+class _Log:
+    """Frames and events of a motion so far."""
+
+    rows: list[Array] = field(default_factory=list)
+    events: list[MotionEvent] = field(default_factory=list)
+    still: bool = False
+
+    def add(self, time: float, kind: EventKind) -> None:
+        self.events.append(MotionEvent(time, kind))
+
+    def tell(self, outcome: Outcome, begin: float, end: float) -> None:
+        """Add what a piece of the motion from begin to end tells."""
+        rests = outcome is Outcome.REST
+        if self.still and not (rests and end == begin):
+            self.add(begin, EventKind.START)
+            self.still = False
+        if rests and not self.still:
+            self.add(end, EventKind.REST)
+        if outcome is Outcome.LEFT_ARRAY:
+            self.add(end, EventKind.EDGE)
+        self.still = rests
+
+    def trajectory(self, motion: Array, outcome: Outcome) -> Trajectory:
+        table = np.concatenate(self.rows)
+        return Trajectory(
+            times=table[:, 0].copy(),
+            poses=table[:, 1:4].copy(),
+            twists=table[:, 4:7].copy(),
+            loads=table[:, 7:10].copy(),
+            error_bounds=table[:, 10].copy(),
+            tips=table[:, 11].astype(np.int64),
+            outcome=outcome,
+            worst_error=float(motion[WORST]),
+            energy=EnergyBalance(*table[:, 12:17].T.copy()),
+            events=tuple(self.events),
+        )
+
+
+def _pieces(
+    drive: Driven, duration: float, step: float
+) -> Iterator[tuple[Activation, float, bool]]:
+    """Yield activations, until when each runs, and whether it is the last."""
+    if isinstance(drive, Activation):
+        yield drive, duration, True
+    elif isinstance(drive, Schedule):
+        pieces = drive.pieces(duration)
+        for k, (_, end, activation) in enumerate(pieces):
+            yield activation, end, k == len(pieces) - 1
+    else:
+        count = max(int(np.ceil(duration / step - 1e-9)), 1)
+        for k in range(count):
+            yield drive(k * step), min((k + 1) * step, duration), k == count - 1

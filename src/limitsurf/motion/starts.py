@@ -1,0 +1,67 @@
+"""Where motions start: given poses, or random ones on an array."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from limitsurf.actuators.actuator_array import ActuatorArray
+from limitsurf.errors import InputError
+from limitsurf.geometry.part import Part
+from limitsurf.sets.arguments import as_array
+
+__all__ = ["check_room", "random_starts", "read_starts"]
+
+Array = NDArray[np.float64]
+
+
+def random_starts(samples: int, seed: int, offset: float) -> Array:
+    """Return random poses (n, 3): uniform orientations, centres uniform in a disk.
+
+    Parameters
+    ----------
+    samples, seed : int
+        Number of poses and seed.
+    offset : float
+        Radius of the disk [m].
+
+    Examples
+    --------
+    >>> random_starts(3, 0, 1e-3).shape
+    (3, 3)
+    """
+    if samples < 1:
+        raise InputError("samples", "must be at least 1", value=samples)
+    if seed < 0:
+        raise InputError("seed", "must be at least 0", value=seed)
+    if not (np.isfinite(offset) and offset >= 0.0):
+        raise InputError("start_offset", "must be at least 0 m", value=offset)
+    radius, angle, theta = np.random.default_rng(seed).random((3, samples))
+    radius = offset * np.sqrt(radius)
+    angle = 2 * np.pi * angle
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), 2 * np.pi * theta])
+
+
+def read_starts(poses: ArrayLike | int, part: Part, seed: int, offset: float | None) -> Array:
+    """Return poses (n, 3): those given, or so many random ones."""
+    if isinstance(poses, int | np.integer):
+        radius = 0.5 * part.circumradius if offset is None else offset
+        return random_starts(int(poses), seed, radius)
+    rows = as_array("poses", poses, None, 3)
+    if len(rows) == 0:
+        raise InputError("poses", "are missing", remedy="give (n, 3) poses or a number of them")
+    return rows
+
+
+def check_room(part: Part, array: ActuatorArray, start_offset: float) -> None:
+    """Raise unless the array holds the part's circumscribed circle at every start."""
+    if not (np.isfinite(start_offset) and start_offset >= 0.0):
+        raise InputError("start_offset", "must be at least 0 m", value=start_offset)
+    room = 0.5 * min(array.width, array.height)
+    if room < part.circumradius + start_offset:
+        raise InputError(
+            "array",
+            f"{array.name} leaves {1e3 * room:.4g} mm around its centre, but the part needs "
+            f"{1e3 * part.circumradius:.4g} mm and its start offsets {1e3 * start_offset:.4g} mm",
+            remedy="take a larger array or a smaller start offset",
+        )
