@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["Bools", "Floats", "Ints", "compiled"]
+__all__ = ["Bools", "Floats", "Ints", "compiled", "inlined"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -35,6 +35,14 @@ def compiled(function: F) -> F:
     """Compile a plain function on arrays and floats."""
     flags = {"reassoc", "contract", "nsz"}
     return cast(F, njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function))
+
+
+def inlined(function: F) -> F:
+    """Compile a plain function as part of each caller.
+
+    For small functions on tuples of arrays: to pass these costs a count of references each.
+    """
+    return cast(F, njit(inline="always", error_model="numpy")(function))
 
 
 def _changed_sources(sources: dict[str, str], before: dict[str, str]) -> set[str]:

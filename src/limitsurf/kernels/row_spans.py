@@ -100,24 +100,25 @@ def row_crossings(edges: Floats, origin_y: float, pitch: float, rows: int) -> Cr
     x, filled = np.empty(offsets[-1]), offsets[:-1].copy()
     for e in range(n):
         x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
+        slope = 1.0 / (y1 - y0) if y1 != y0 else 0.0
         for r in range(begin[e], end[e]):
-            share = min(max((origin_y + pitch * r - y0) / (y1 - y0), 0.0), 1.0)
+            share = min(max((origin_y + pitch * r - y0) * slope, 0.0), 1.0)
             x[filled[r - first]] = x0 + (x1 - x0) * share
             filled[r - first] += 1
     for k in range(last - first):
-        _sort(x[offsets[k] : offsets[k + 1]])
+        if offsets[k + 1] - offsets[k] > 32:
+            x[offsets[k] : offsets[k + 1]].sort()
+        else:
+            _sort(x, offsets[k], offsets[k + 1])
     return Crossings(first, offsets, x)
 
 
 @compiled
-def _sort(x: Floats) -> None:
-    """Sort in place; most rows are crossed a few times."""
-    if x.shape[0] > 32:
-        x.sort()
-        return
-    for i in range(1, x.shape[0]):
+def _sort(x: Floats, begin: int, end: int) -> None:
+    """Sort a few entries in place by insertion."""
+    for i in range(begin + 1, end):
         value, j = x[i], i
-        while j > 0 and x[j - 1] > value:
+        while j > begin and x[j - 1] > value:
             x[j] = x[j - 1]
             j -= 1
         x[j] = value

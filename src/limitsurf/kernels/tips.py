@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from limitsurf.kernels.compile import Floats, Ints, compiled
+from limitsurf.kernels.compile import Floats, Ints, compiled, inlined
 from limitsurf.kernels.lattice import (
     Lattice,
     distance_to_edge,
@@ -25,7 +25,7 @@ from limitsurf.kernels.lattice import (
     last_site,
     reach_in_row,
 )
-from limitsurf.kernels.row_spans import Spans, row_spans, span_changes, span_sites
+from limitsurf.kernels.row_spans import Spans, row_spans, span_sites
 from limitsurf.kernels.symmetric3 import Symmetric
 
 __all__ = [
@@ -85,7 +85,7 @@ def new_tips(lattice: Lattice, reach: float) -> Tips:
     )
 
 
-@compiled
+@inlined
 def tip_data(tips: Tips) -> Floats:
     """Return x, y about the anchor and share, (3, room); free places have share 0, far away."""
     room = tips.numbers[ROOM]
@@ -122,13 +122,8 @@ def move_tips(lattice: Lattice, edges: Floats, x: float, y: float, tips: Tips, o
         _list_anew(lattice, x, y, tips, new)
     else:
         _drop_shares(lattice, tips)
-        entered, left = span_changes(old, new)
-        for i in range(left.shape[0]):
-            if lattice.active[left[i, 0], left[i, 1]]:
-                _remove(lattice, tips, left[i, 0], left[i, 1])
-        for i in range(entered.shape[0]):
-            if lattice.active[entered[i, 0], entered[i, 1]]:
-                _add(lattice, tips, entered[i, 0], entered[i, 1], 1.0)
+        _change(old, new, lattice, tips, False)
+        _change(new, old, lattice, tips, True)
     if lattice.tip_width > 0.0:
         _share_along_outline(edges, lattice, tips)
     tips.numbers[AGE] += 1
@@ -156,6 +151,40 @@ def _list_anew(lattice: Lattice, x: float, y: float, tips: Tips, spans: Spans) -
 
 
 @compiled
+def _change(a: Spans, b: Spans, lattice: Lattice, tips: Tips, enter: bool) -> None:
+    """Let the active sites of a that are not in b enter the list, or leave it."""
+    active, rows, shift = lattice.active, b.offsets.shape[0] - 1, a.first_row - b.first_row
+    starts, others = a.offsets, b.offsets
+    a_left, a_right, b_left, b_right = a.left, a.right, b.left, b.right
+    for k in range(starts.shape[0] - 1):
+        j = stop = 0
+        if 0 <= k + shift < rows:
+            j, stop = others[k + shift], others[k + shift + 1]
+        first = starts[k]
+        single = starts[k + 1] == first + 1 and stop == j + 1
+        if single and a_left[first] == b_left[j] and a_right[first] == b_right[j]:
+            continue
+        for i in range(first, starts[k + 1]):
+            c, end = a_left[i], a_right[i]
+            while c < end:
+                while j < stop and b_right[j] <= c:
+                    j += 1
+                free = end if j == stop else min(max(b_left[j], c), end)
+                for column in range(c, free):
+                    if active[a.first_row + k, column]:
+                        _enter_or_leave(lattice, tips, a.first_row + k, column, enter)
+                c = end if j == stop else min(max(b_right[j], free), end)
+
+
+@inlined
+def _enter_or_leave(lattice: Lattice, tips: Tips, r: int, c: int, enter: bool) -> None:
+    if enter:
+        _add(lattice, tips, r, c, 1.0)
+    else:
+        _remove(lattice, tips, r, c)
+
+
+@compiled
 def _make_room(tips: Tips, needed: int) -> None:
     """Make room for `needed` tips and some more; the places of tips stay."""
     room = min(needed + needed // 64 + 8, tips.rows.shape[0])
@@ -168,7 +197,7 @@ def _make_room(tips: Tips, needed: int) -> None:
     data[2, count:] = 0.0
 
 
-@compiled
+@inlined
 def _weigh(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> tuple[float, float]:
     """Add a tip to the sums, with a share that may be negative; return where it is."""
     x = lattice.origin_x + lattice.pitch * c - tips.anchor[0]
@@ -195,7 +224,7 @@ def _add_up(lattice: Lattice, tips: Tips) -> None:
         _weigh(lattice, tips, tips.rows[k], tips.columns[k], share[k])
 
 
-@compiled
+@inlined
 def _add(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> None:
     k = tips.numbers[COUNT]
     if k == tips.numbers[ROOM]:
@@ -208,7 +237,7 @@ def _add(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> None:
     tips.numbers[COUNT] = k + 1
 
 
-@compiled
+@inlined
 def _remove(lattice: Lattice, tips: Tips, r: int, c: int) -> None:
     """Remove a tip; the last of the list takes its place."""
     data = tip_data(tips)
@@ -223,7 +252,7 @@ def _remove(lattice: Lattice, tips: Tips, r: int, c: int) -> None:
     tips.numbers[COUNT] = last
 
 
-@compiled
+@inlined
 def _set_share(lattice: Lattice, tips: Tips, k: int, share: float) -> None:
     shares = tip_data(tips)[2]
     _weigh(lattice, tips, tips.rows[k], tips.columns[k], share - shares[k])
@@ -262,7 +291,7 @@ def _share_along_outline(edges: Floats, lattice: Lattice, tips: Tips) -> None:
                         _share_tip(lattice, tips, r, c, distance / lattice.tip_width)
 
 
-@compiled
+@inlined
 def _share_tip(lattice: Lattice, tips: Tips, r: int, c: int, distance: float) -> None:
     """Set the share of a tip at a distance, in tip widths, from an edge: the nearest counts."""
     k = tips.slot[r, c]
