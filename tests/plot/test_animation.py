@@ -89,7 +89,7 @@ def test_feet_move_and_switch(axes):
     shown = [arrows for arrows in piece.arrows.values() if arrows.get_visible()]
     assert len(shown) == 1
     turned = np.column_stack([shown[0].U, shown[0].V])
-    assert turned == pytest.approx(np.array([[0.0, 0.4], [0.0, 0.0]]), abs=1e-12)  # of the reach
+    assert turned == pytest.approx(np.array([[0.0, 0.7 / np.sqrt(3)], [0.0, 0.0]]), abs=1e-12)
     piece.show(0.45, np.zeros(3))
     assert len(piece.places.get_offsets()) == 3
 

@@ -101,14 +101,25 @@ class Feet:
     """The feet of a body: active ones with the push of the ground on them, passive ones grey."""
 
     def __init__(self, axes: Axes, feet: Schedule[ContactSet]) -> None:
+        from matplotlib.collections import EllipseCollection
+
         self._feet = feet
         largest = max(np.hypot(*c.offset.T).max(initial=0.0) for _, c in feet.entries) or 1.0
-        length = 0.4 * _MM * reach_of(feet)
+        length = 0.7 * _MM * min(reach_of(feet) / max(len(c), 1) ** 0.5 for _, c in feet.entries)
         (self.body,) = axes.fill([0.0], [0.0], color=COLORS[0], alpha=0.15, zorder=3)
-        self.places = axes.scatter([], [], s=30.0, zorder=5)
+        self.places = EllipseCollection(
+            widths=[0.35 * length],
+            heights=[0.35 * length],
+            angles=[0.0],
+            units="xy",
+            offsets=np.zeros((1, 2)),
+            offset_transform=axes.transData,
+            zorder=5,
+        )
+        axes.add_collection(self.places)
         self._pushes = {id(c): length / largest * c.offset for _, c in feet.entries}
         self.arrows = {
-            id(c): _arrows(axes, c.position, self._pushes[id(c)], 0.05 * length, zorder=6)
+            id(c): _arrows(axes, c.position, self._pushes[id(c)], 0.13 * length, zorder=6)
             for _, c in feet.entries
         }
 
