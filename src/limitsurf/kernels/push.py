@@ -21,6 +21,7 @@ import math
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.vectors import length
 
 __all__ = ["NODE", "push_balance", "push_path", "push_rate"]
 
@@ -38,7 +39,7 @@ def _slope(levers: Floats, n: float, ux: float, uy: float, omega: float) -> floa
         wx, wy, m = levers[0, i], levers[1, i], levers[2, i]
         vx = levers[3, i] * ux + levers[4, i] * uy + omega * wx
         vy = levers[4, i] * ux + levers[5, i] * uy + omega * wy
-        speed = math.hypot(vx, vy)
+        speed = length(vx, vy)
         if speed > 0.0:
             total += m * (vx * wx + vy * wy) / speed
     return total
@@ -53,9 +54,9 @@ def _scales(levers: Floats, n: float, ux: float, uy: float) -> tuple[float, floa
         wx, wy, m = levers[0, i], levers[1, i], levers[2, i]
         cx = levers[3, i] * ux + levers[4, i] * uy
         cy = levers[4, i] * ux + levers[5, i] * uy
-        size += m * math.hypot(wx, wy)
+        size += m * length(wx, wy)
         if m * (wx * wx + wy * wy) > 0.0:
-            rate = max(rate, math.hypot(cx, cy) / math.hypot(wx, wy))
+            rate = max(rate, length(cx, cy) / length(wx, wy))
     return rate, 8.0 * _EPS * size
 
 
@@ -105,7 +106,7 @@ def _friction(
         wx, wy, m = levers[0, i], levers[1, i], levers[2, i]
         a, b, d = levers[3, i], levers[4, i], levers[5, i]
         vx, vy = a * ux + b * uy + omega * wx, b * ux + d * uy + omega * wy
-        speed = math.hypot(vx, vy)
+        speed = length(vx, vy)
         power += m * speed
         if speed > 0.0:
             ex, ey = m * vx / speed, m * vy / speed
@@ -181,6 +182,6 @@ def push_path(
                 turned += weight * rate
                 work += weight * done
                 friction += weight * power
-                worst = max(worst, (power - done) / math.hypot(dx, dy) if power > done else 0.0)
+                worst = max(worst, (power - done) / length(dx, dy) if power > done else 0.0)
             theta += turned
     return worst

@@ -122,10 +122,10 @@ def _rows(pieces: list[Piece], last: SteadyWalk, pose: Array, end: float, frames
 
     Twists and loads are in the body frame.
     """
-    grid = np.linspace(0.0, end, frames + 1)
+    grid, gap = np.linspace(0.0, end, frames + 1), 1e-9 * end  # no two frames at a switch
     spent, tables = np.zeros(3), []
     for begin, until, phase in pieces:
-        times = np.union1d(grid[(grid > begin) & (grid < until)], begin)
+        times = np.append(begin, grid[(grid > begin + gap) & (grid < until - gap)])
         tables.append(_table(phase, times, begin, pose, spent))
         pose, spent = phase.poses(until - begin, pose), spent + (until - begin) * phase.powers
     return np.vstack([*tables, _table(last, np.array([end]), end, pose, spent)])
