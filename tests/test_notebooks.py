@@ -8,6 +8,7 @@ import pytest
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 PRINTED = {
     "01_active_contacts": ("Wheel(", "all numbers hold"),
+    "02_walker": ("SteadyWalk(held)", "all numbers hold"),
     "align_a_part": ("AlignmentPlan(", "Verification("),
 }
 

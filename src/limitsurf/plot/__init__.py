@@ -1,8 +1,10 @@
 """Pictures of limitsurf objects; the objects themselves have no plot method.
 
-Every function returns a plotly figure, with units on its axes: ``draw_part(part).show()``.
+Every function returns a plotly figure, with units on its axes: ``draw_part(part).show()``; only
+`animate` returns a matplotlib animation.
 """
 
+from limitsurf.plot.animation import animate
 from limitsurf.plot.errors import draw_errors
 from limitsurf.plot.limit_curve import draw_limit_curve
 from limitsurf.plot.limit_surface import draw_limit_surface
@@ -12,6 +14,7 @@ from limitsurf.plot.squeeze import draw_plan, draw_squeeze_function
 from limitsurf.plot.turn import draw_turn_function
 
 __all__ = [
+    "animate",
     "animate_runs",
     "draw_errors",
     "draw_limit_curve",
