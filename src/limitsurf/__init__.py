@@ -50,11 +50,17 @@ if TYPE_CHECKING:
     from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
     from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
+    from limitsurf.motion.pushing import Push as Push
+    from limitsurf.motion.pushing import push as push
+    from limitsurf.motion.pushing import push_along as push_along
     from limitsurf.motion.schedule import Schedule as Schedule
     from limitsurf.motion.simulate import simulate as simulate
     from limitsurf.motion.simulate_many import Runs as Runs
     from limitsurf.motion.simulate_many import simulate_many as simulate_many
+    from limitsurf.motion.steady_walk import SteadyWalk as SteadyWalk
+    from limitsurf.motion.steady_walk import steady_walk as steady_walk
     from limitsurf.motion.trajectory import Trajectory as Trajectory
+    from limitsurf.motion.walk import walk as walk
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
@@ -77,6 +83,7 @@ if TYPE_CHECKING:
     from limitsurf.sets.sections import section as section
     from limitsurf.sets.v_polytope import VPolytope as VPolytope
     from limitsurf.sets.zonotope import Zonotope as Zonotope
+
 
 __version__ = "0.1.0"
 
@@ -102,6 +109,7 @@ _HOME = {
     "PolynomialSet": "sets.polynomial_set",
     "PressurePatch": "contacts.pressure_patch",
     "Projection": "sets.projection",
+    "Push": "motion.pushing",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
     "Runs": "motion.simulate_many",
@@ -109,6 +117,7 @@ _HOME = {
     "Section": "sets.sections",
     "SoftContact": "contacts.soft_contact",
     "SqueezeFunction": "planning.squeeze_function",
+    "SteadyWalk": "motion.steady_walk",
     "TipDissipation": "contacts.tip_dissipation",
     "TorsionalResonator": "actuators.torsional_resonator",
     "Trajectory": "motion.trajectory",
@@ -133,6 +142,8 @@ _HOME = {
     "plan_alignment": "planning.alignment",
     "polygonal_contact": "contacts.coulomb",
     "project_many": "contacts.project_many",
+    "push": "motion.pushing",
+    "push_along": "motion.pushing",
     "radial_field": "actuators.force_fields",
     "realise": "actuators.realised_field",
     "section": "sets.sections",
@@ -143,11 +154,13 @@ _HOME = {
     "squeeze_activation": "actuators.activation",
     "squeeze_field": "actuators.force_fields",
     "squeeze_function": "planning.squeeze_function",
+    "steady_walk": "motion.steady_walk",
     "sweep_resonators": "actuators.resonator_sweep",
     "transport": "sets.linear_image",
     "turn_function": "planning.turn_function",
     "uniform_field": "actuators.force_fields",
     "verify_alignment": "planning.verification",
+    "walk": "motion.walk",
 }
 _MODULES = ("errors", "plot", "units")
 
