@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.compile import Floats, compiled, inlined
 from limitsurf.kernels.contact_pass import BLOCK, Contacts
 from limitsurf.kernels.contact_problem import (
     BOUND,
@@ -48,7 +48,7 @@ from limitsurf.kernels.tips import (
     new_tips,
     tip_data,
 )
-from limitsurf.kernels.vectors import Vector, along
+from limitsurf.kernels.vectors import Vector, along, dot, scaled
 
 __all__ = [
     "ENERGIES",
@@ -78,6 +78,9 @@ TIME, POSE, TWIST_NOW, START, WIDTH, LOAD_NOW, SLACK, ENERGIES = 0, 1, 4, 7, 10,
 WORST, HEAVIEST, STEP, STEPS, NEXT_FRAME, _MOTION = 19, 20, 21, 22, 23, 24
 FRAME = 17  # time, pose, twist, load, bound, tips, kinetic, work, friction, drag, numerical
 _SHORTEST = 1e-6  # steps are not made shorter than that, relative to the longest
+
+
+Pair = tuple[float, float]
 
 
 class Body(NamedTuple):
@@ -185,76 +188,90 @@ def _slow(body: Body, speed: float, v: Vector, load: Vector) -> bool:
     return bool(terminal + body.reach * abs(load[2]) / body.drag[2] < speed)
 
 
-@compiled
-def _solve(
-    body: Body, ground: Ground, pace: Pace, motion: Floats, dt: float, work: Work
-) -> tuple[bool, float, float, float]:
-    """Overwrite the twist by that of the step; return whether it rests, and three works.
+@inlined
+def _three(a: Floats, k: int) -> Vector:
+    return a[k], a[k + 1], a[k + 2]
 
-    The works of pushes and external load, against friction, and against drag are per second.
+
+@inlined
+def _keep(motion: Floats, k: int, v: Vector) -> None:
+    motion[k], motion[k + 1], motion[k + 2] = v
+
+
+@inlined
+def _loss(d: Vector, v: Vector) -> float:
+    """Return ``v' diag(d) v``."""
+    return d[0] * v[0] * v[0] + d[1] * v[1] * v[1] + d[2] * v[2] * v[2]
+
+
+@inlined
+def _pushes(ground: Ground, tips: Tips, normal: float, dx: float, dy: float) -> Vector:
+    """Return the load of the pushes about a point at (dx, dy) from the anchor."""
+    push = ground.push * normal
+    fx, fy = push * tips.sums[PUSH_X], push * tips.sums[PUSH_Y]
+    return fx, fy, push * tips.sums[PUSH_M] - dx * fy + dy * fx
+
+
+@inlined
+def _slide_against_friction(
+    pace: Pace, motion: Floats, work: Work, unit: float, q: Vector, c: Vector, at: Pair
+) -> tuple[Vector, Vector, float]:
+    """Return the twist of a load c, the frictional load that it overcomes, and the error bound.
+
+    Contacts are about the anchor, from which the part is at (dx, dy); q is the diagonal of the
+    quadratic term, `unit` the friction of a tip of share 1, by which loads are scaled.
     """
-    tips, best = work.tips, work.best
-    normal = _normal(body, tips)
-    dx, dy = motion[POSE] - tips.anchor[0], motion[POSE + 1] - tips.anchor[1]
-    pushes, v0 = ground.push * normal, motion[TWIST_NOW : TWIST_NOW + 3].copy()
-    fx, fy = pushes * tips.sums[PUSH_X], pushes * tips.sums[PUSH_Y]
-    m = pushes * tips.sums[PUSH_M] - dx * fy + dy * fx
-    external, _ = load_at(body.load, motion[TIME] + dt)
-    drive = along((fx, fy, m), 1.0, external)
-    q = body.mass / dt + body.drag
-    cx, cy = drive[0] + body.mass[0] * v0[0] / dt, drive[1] + body.mass[1] * v0[1] / dt
-    cm = drive[2] + body.mass[2] * v0[2] / dt
-    rx, ry, rm = 0.0, 0.0, 0.0
-    vx, vy, w, bound = cx / q[0], cy / q[1], cm / q[2], 0.0
-    if ground.grip > 0.0:
-        # about the anchor, with the friction of a tip of share 1 as the unit of force
-        unit = ground.grip * normal
-        c = cx / unit, cy / unit, (cm + dx * cy - dy * cx) / unit
-        a, b, d = 1.0 / math.sqrt(q[0]), 1.0 / math.sqrt(q[1]), 1.0 / math.sqrt(q[2])
-        C = (a, 0.0, 0.0), (0.0, b, 0.0), (d * dy, -d * dx, d)
-        contacts = Contacts(tip_data(tips), 1, None)
-        n = contacts.data.shape[1]
-        setting = new_setting(n, moments_of(tips), C, c, math.sqrt(0.5 * (a * a + b * b)), pace.tol)
-        start = motion[START], motion[START + 1], motion[START + 2]
-        v = start[0] + start[2] * dy, start[1] - start[2] * dx, start[2]
-        problem = Problem(contacts, work.table[: -(-n // BLOCK) + 1], setting)
-        solve_contact_sum(problem, best, v, motion[WIDTH], work.none)
-        w = best[WITNESS + 2]
-        motion[START], motion[START + 1] = best[WITNESS] - w * dy, best[WITNESS + 1] + w * dx
-        motion[START + 2], motion[WIDTH] = w, best[EPS]
-        w = unit * best[TWIST + 2]
-        vx, vy = unit * best[TWIST] - w * dy, unit * best[TWIST + 1] + w * dx
-        rx, ry = unit * best[LOAD], unit * best[LOAD + 1]
-        rm = unit * best[LOAD + 2] - dx * ry + dy * rx
-        bound = unit * (best[BOUND] + setting.rounding) * math.sqrt(q[0])
-    motion[TWIST_NOW], motion[TWIST_NOW + 1], motion[TWIST_NOW + 2] = vx, vy, w
-    motion[LOAD_NOW], motion[LOAD_NOW + 1], motion[LOAD_NOW + 2] = fx - rx, fy - ry, m - rm
-    left = along(drive, -1.0, (rx, ry, rm))
-    motion[SLACK] = bound
-    motion[WORST] = max(motion[WORST], bound / body.weight)
-    rests = vx == vy == w == 0.0 and not (np.any(v0) and np.any(body.mass))
-    rests = body.load.kind != VARIES and (rests or _slow(body, pace.rest_speed, (vx, vy, w), left))
-    drag = body.drag[0] * vx * vx + body.drag[1] * vy * vy + body.drag[2] * w * w
-    worked = drive[0] * vx + drive[1] * vy + drive[2] * w
-    return rests, worked, rx * vx + ry * vy + rm * w, drag
+    best, (dx, dy) = work.best, at
+    a, b, d = 1.0 / math.sqrt(q[0]), 1.0 / math.sqrt(q[1]), 1.0 / math.sqrt(q[2])
+    C = (a, 0.0, 0.0), (0.0, b, 0.0), (d * dy, -d * dx, d)
+    load = c[0] / unit, c[1] / unit, (c[2] + dx * c[1] - dy * c[0]) / unit
+    contacts = Contacts(tip_data(work.tips), 1, None)
+    n, size = contacts.data.shape[1], math.sqrt(0.5 * (a * a + b * b))
+    setting = new_setting(n, moments_of(work.tips), C, load, size, pace.tol)
+    problem = Problem(contacts, work.table[: -(-n // BLOCK) + 1], setting)
+    vx, vy, w = _three(motion, START)
+    start = vx + w * dy, vy - w * dx, w
+    solve_contact_sum(problem, best, start, motion[WIDTH], work.none)
+    vx, vy, w = _three(best, WITNESS)
+    _keep(motion, START, (vx - w * dy, vy + w * dx, w))
+    motion[WIDTH] = best[EPS]
+    vx, vy, w = scaled(unit, _three(best, TWIST))
+    fx, fy, m = scaled(unit, _three(best, LOAD))
+    bound = unit * (best[BOUND] + setting.rounding) * math.sqrt(q[0])
+    return (vx - w * dy, vy + w * dx, w), (fx, fy, m - dx * fy + dy * fx), bound
 
 
 @compiled
 def _take(body: Body, ground: Ground, pace: Pace, motion: Floats, dt: float, work: Work) -> bool:
     """Solve for a step, add to the energies and move on; return whether the part rests instead."""
-    v0 = motion[TWIST_NOW : TWIST_NOW + 3].copy()
-    rests, worked, friction, drag = _solve(body, ground, pace, motion, dt, work)
-    if rests:
-        return True
-    lost = 0.0
-    for k in range(3):
-        lost += 0.5 * body.mass[k] * (motion[TWIST_NOW + k] - v0[k]) ** 2
-        motion[POSE + k] += dt * motion[TWIST_NOW + k]
-    motion[ENERGIES] += dt * worked
-    motion[ENERGIES + 1] += dt * friction
-    motion[ENERGIES + 2] += dt * drag
-    motion[ENERGIES + 3] += lost
+    tips, v0 = work.tips, _three(motion, TWIST_NOW)
+    normal = _normal(body, tips)
+    at = motion[POSE] - tips.anchor[0], motion[POSE + 1] - tips.anchor[1]
+    pushes = _pushes(ground, tips, normal, at[0], at[1])
+    external, _ = load_at(body.load, motion[TIME] + dt)
+    drive = along(pushes, 1.0, external)
+    M, D = _three(body.mass, 0), _three(body.drag, 0)
+    q = along(D, 1.0 / dt, M)
+    momentum = M[0] * v0[0], M[1] * v0[1], M[2] * v0[2]
+    c = along(drive, 1.0 / dt, momentum)
+    v, friction, bound = (c[0] / q[0], c[1] / q[1], c[2] / q[2]), (0.0, 0.0, 0.0), 0.0
+    if ground.grip > 0.0:
+        unit = ground.grip * normal
+        v, friction, bound = _slide_against_friction(pace, motion, work, unit, q, c, at)
+    _keep(motion, TWIST_NOW, v)
+    _keep(motion, LOAD_NOW, along(pushes, -1.0, friction))
+    motion[SLACK] = bound
+    motion[WORST] = max(motion[WORST], bound / body.weight)
+    if body.load.kind != VARIES:
+        held = v == (0.0, 0.0, 0.0) and momentum == (0.0, 0.0, 0.0)
+        if held or _slow(body, pace.rest_speed, v, along(drive, -1.0, friction)):
+            return True
+    _keep(motion, POSE, along(_three(motion, POSE), dt, v))
     motion[TIME] += dt
+    motion[ENERGIES] += dt * dot(drive, v)
+    motion[ENERGIES + 1] += dt * dot(friction, v)
+    motion[ENERGIES + 2] += dt * _loss(D, v)
+    motion[ENERGIES + 3] += 0.5 * _loss(M, along(v, -1.0, v0))
     return False
 
 

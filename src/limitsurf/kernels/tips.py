@@ -150,7 +150,7 @@ def _list_anew(lattice: Lattice, x: float, y: float, tips: Tips, spans: Spans) -
             _add(lattice, tips, sites[i, 0], sites[i, 1], 1.0)
 
 
-@compiled
+@inlined
 def _change(a: Spans, b: Spans, lattice: Lattice, tips: Tips, enter: bool) -> None:
     """Let the active sites of a that are not in b enter the list, or leave it."""
     active, rows, shift = lattice.active, b.offsets.shape[0] - 1, a.first_row - b.first_row
@@ -259,7 +259,7 @@ def _set_share(lattice: Lattice, tips: Tips, k: int, share: float) -> None:
     shares[k] = share
 
 
-@compiled
+@inlined
 def _drop_shares(lattice: Lattice, tips: Tips) -> None:
     """Undo the partial shares at the outline."""
     for i in range(tips.numbers[BORDER]):
@@ -271,7 +271,7 @@ def _drop_shares(lattice: Lattice, tips: Tips) -> None:
     tips.numbers[BORDER] = 0
 
 
-@compiled
+@inlined
 def _share_along_outline(edges: Floats, lattice: Lattice, tips: Tips) -> None:
     """Give the tips within b/2 of the outline their partial share."""
     rows, columns = lattice.active.shape
