@@ -145,6 +145,7 @@ def test_a_part_at_rest_stays_exactly(array64, paper_t):
         again = simulate(paper_t, strong, path.final_pose, mode=mode)
         assert again.outcome is Outcome.REST
         assert again.duration == 0.0
+        assert again.held
         assert np.array_equal(again.final_pose, path.final_pose)
 
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from limitsurf.actuators.activation import Activation
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.kernels.lattice import Lattice
-from limitsurf.kernels.slide import FRAME, TIME, Body, Ground, Pace, slide
+from limitsurf.kernels.slide import FRAME, slide
+from limitsurf.kernels.slide_step import TIME, Body, Ground, Pace
 
 __all__ = ["ArraySteps", "ground_of"]
 

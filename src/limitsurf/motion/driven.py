@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from limitsurf.actuators.activation import Activation
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError
-from limitsurf.kernels.slide import HEAVIEST, STEPS, TIME, TWIST_NOW, WORST, new_motion
+from limitsurf.kernels.slide_step import HEAVIEST, STEPS, TIME, TWIST_NOW, WORST, new_motion
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.time_scales import refuse_heavy
 from limitsurf.motion.trajectory import (

@@ -13,7 +13,7 @@ from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.slide import Body, Pace
+from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.driven import Driven, DrivenMotion, Watch

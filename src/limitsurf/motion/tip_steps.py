@@ -23,9 +23,9 @@ from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.contacts.tip_dissipation import TipDissipation
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.slide import (
+from limitsurf.kernels.slide import FRAME
+from limitsurf.kernels.slide_step import (
     ENERGIES,
-    FRAME,
     HEAVIEST,
     LEFT_ARRAY,
     NEXT_FRAME,

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from limitsurf.errors import InputError
-from limitsurf.kernels.slide import LEFT_ARRAY, NOT_LIFTED, REST, TIME_LIMIT
+from limitsurf.kernels.slide_step import LEFT_ARRAY, NOT_LIFTED, REST, TIME_LIMIT
 from limitsurf.sets.arguments import as_array
 
 if TYPE_CHECKING:
@@ -167,6 +167,15 @@ class Trajectory:
         """Pose at the end."""
         last: Array = self.poses[-1]
         return last
+
+    @property
+    def held(self) -> bool:
+        """Whether it ended certified at rest, and not just too slow to matter.
+
+        Then the last twist is exactly zero, and the contacts hold the part within the last of the
+        error bounds.
+        """
+        return self.outcome is Outcome.REST and not self.twists[-1].any()
 
     def at(self, times: ArrayLike) -> Array:
         """Return poses (..., 3) at any times (...) of the motion, interpolated without overshoot.
