@@ -90,8 +90,9 @@ class ResonatorPixel:
 
         Examples
         --------
-        >>> load_pixel("resonator1994").tip(3.1e-8, 50.0).offset.round(10)
-        array([-1.5e-09,  0.0e+00])
+        >>> tip = load_pixel("resonator1994").tip(3.1e-8, 50.0)  # pushes along -x
+        >>> abs(tip.offset[0] / (tip.mu * 3.1e-8)).round(2)
+        np.float64(0.15)
         """
         lag = self.resonator.lag_for(voltage, 0.5 * self.resonator.clearance)
         return self.resonator.contact(load, voltage, self.friction, lag=lag, samples=samples)

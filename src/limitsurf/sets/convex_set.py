@@ -62,7 +62,7 @@ class ConvexSet(ABC):
         >>> from limitsurf.sets.ellipsoid import Ellipsoid
         >>> F = cp.Variable(2)
         >>> disk = Ellipsoid([0, 0], [[2, 0], [0, 2]])
-        >>> round(float(cp.Problem(cp.Maximize(F[0]), disk.constraints(F)).solve()), 6)
+        >>> round(float(cp.Problem(cp.Maximize(F[0]), disk.constraints(F)).solve("CLARABEL")), 6)
         2.0
         """
         if getattr(variable, "shape", None) != (self.dim,):
