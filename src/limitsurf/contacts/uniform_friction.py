@@ -85,7 +85,7 @@ class UniformFriction(ConvexSet):
         return self._traction * self._part.circumradius**2
 
     @cached_property
-    def _load_of_unit(self) -> Array:
+    def load_of_unit(self) -> Array:
         """Map (3, 3) from the loads of the kernels to those about the reference point [N, N m]."""
         x, y = self._center
         transport = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-y, x, 1.0]])
@@ -93,7 +93,7 @@ class UniformFriction(ConvexSet):
 
     def _sums(self, directions: Array) -> tuple[Array, Array]:
         """Return the rows of `power_sums`, of directions scaled to size 1, and their sizes."""
-        twists = directions @ self._load_of_unit
+        twists = directions @ self.load_of_unit
         size = np.abs(twists).max(axis=1, initial=0.0)
         size[size == 0.0] = 1.0
         out = np.empty((len(twists), 11))
@@ -102,7 +102,7 @@ class UniformFriction(ConvexSet):
 
     def _support_points(self, directions: Array) -> Array:
         sums, _ = self._sums(directions)
-        return np.asarray(sums[:, 1:4] @ self._load_of_unit.T)
+        return np.asarray(sums[:, 1:4] @ self.load_of_unit.T)
 
     def _supports(self, directions: Array) -> Array:
         sums, size = self._sums(directions)
@@ -119,7 +119,7 @@ class UniformFriction(ConvexSet):
         sums, size = self._sums(directions)
         xx, xy, yy, xw, yw, ww = sums[:, 4:10].T
         H = np.array([[xx, xy, xw], [xy, yy, yw], [xw, yw, ww]]).transpose(2, 0, 1)
-        B = self._load_of_unit
+        B = self.load_of_unit
         return np.asarray((B @ H @ B.T / size[:, None, None]).reshape(*shape, 3, 3))
 
     def face(self, d: ArrayLike, tol: float = 1e-9) -> ConvexSet:
@@ -131,7 +131,7 @@ class UniformFriction(ConvexSet):
         return Ellipsoid(self._support_points(direction[None])[0], np.empty((3, 0)))
 
     def _project(self, points: Array, metric: Metric) -> Rows:
-        B = self._load_of_unit
+        B = self.load_of_unit
         C = np.ascontiguousarray(metric.C @ B)
         loads = np.ascontiguousarray(np.linalg.solve(B, points.T).T)
         answers = np.empty((len(points), ANSWER))

@@ -25,7 +25,7 @@ import numpy as np
 from limitsurf.kernels.clipped_triangle import Clip, clip, moments, new_clip, start_triangle
 from limitsurf.kernels.compile import Floats, Ints, compiled
 
-__all__ = ["JACOBIAN", "LOAD", "POTENTIAL", "STATE", "Pieces", "density_states"]
+__all__ = ["JACOBIAN", "LOAD", "POTENTIAL", "STATE", "Pieces", "density_states", "new_state"]
 
 LOAD, POTENTIAL, JACOBIAN, STATE = 0, 3, 4, 13  # places in a state
 _GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
@@ -119,6 +119,12 @@ def _add_piece(
                 sign = 1.0 if side == 0 else -1.0
                 _add_border(corners[j], to, pieces.normal[labels[j]], sign, b, A, J)
     _add_area(m, b, A, level, out)
+
+
+@compiled
+def new_state() -> Floats:
+    """Return room for the state at one pose, (1, 13)."""
+    return np.empty((1, STATE))
 
 
 @compiled
