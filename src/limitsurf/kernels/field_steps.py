@@ -183,6 +183,6 @@ def field_steps(
         pose += dt * new
         speed = math.hypot(new[0], new[1]) + body.reach * abs(new[2])
         change = math.hypot(new[0] - old[0], new[1] - old[1]) + body.reach * abs(new[2] - old[2])
-        rests = loads.shape[0] == 1 and max(speed, change * rest[1] / dt) < rest[0]
+        rests = loads.shape[0] == 1 and max(speed, change * rest[1] / dt) <= rest[0]
         old[:] = new
     return rests, written, worst

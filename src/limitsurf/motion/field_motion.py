@@ -16,7 +16,7 @@ from limitsurf.motion.field_ode import field_ode
 from limitsurf.motion.field_problem import ExternalLoad, FieldProblem, field_problem
 from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
 from limitsurf.sets.arguments import as_array, as_number
-from limitsurf.tolerances import CONTACT_STEP
+from limitsurf.tolerances import CONTACT_SUM
 
 __all__ = ["field_motion"]
 
@@ -74,11 +74,12 @@ def field_motion(
         friction. ``"events"`` integrates the smooth motion between stops with control of the error
         and finds the stops; it does not take friction together with mass and a changing load.
     time_step : float, optional
-        Step [s] of ``"steps"``; by default a two-hundredth of the time for a circumradius.
+        Step [s] of ``"steps"``; by default a two-hundredth of the time for a circumradius, or a
+        little less, so that the last one ends at the limit.
     tolerance : float
         Error of ``"events"``, relative to circumradius, speed and work.
     frames : int
-        About how many frames to record.
+        About how many frames to record; with ``"events"`` between stops.
 
     Returns
     -------
@@ -114,7 +115,8 @@ def field_motion(
     limit = _positive("duration", 60.0 * problem.time if duration is None else duration)
     if method == "events":
         return field_ode(problem, start, speed, limit, _positive("tolerance", tolerance), frames)
-    dt = _positive("time_step", problem.time / _STEPS_PER_TIME if time_step is None else time_step)
+    whole = np.ceil(limit * _STEPS_PER_TIME / problem.time)
+    dt = limit / whole if time_step is None else _positive("time_step", time_step)
     return _by_steps(problem, start, speed, limit, dt, frames)
 
 
@@ -135,7 +137,7 @@ def _by_steps(
         loads,
         (tuple(pose.tolist()), tuple(velocity.tolist())),
         (dt, steps, stride),
-        CONTACT_STEP,
+        CONTACT_SUM,
         (problem.rest_speed, problem.time),
         rows,
     )

@@ -138,8 +138,7 @@ def _slide(
     if not found.success:
         raise SolveFailed(f"field_motion: {found.message}", best=found)
     end = float(found.t[-1])
-    grid = np.linspace(0.0, limit, frames + 1)
-    for time in [*grid[(grid > begin) & (grid < end)], end]:
+    for time in np.linspace(begin, end, frames + 1)[1:]:
         frame = unit * found.sol(time)
         frame[3:6] = _twist(problem, float(time), frame)
         record.add(float(time), frame)
