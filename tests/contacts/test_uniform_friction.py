@@ -98,6 +98,31 @@ def test_closest_points_meet_the_optimality_conditions(friction, condition, rng)
     assert np.all(found.error_bound <= 1e-11 * size)
 
 
+def test_random_outlines_metrics_and_loads(rng):
+    """Slender parts, stretched metrics, loads far away and 1e-9 from the boundary: all solved."""
+    for n in rng.integers(3, 40, 25):
+        angle, radius = (
+            2 * np.pi / n * (np.arange(n) + rng.uniform(0, 0.8, n)),
+            rng.uniform(0.3, 2, n),
+        )
+        thin = 10.0 ** rng.uniform(-1.7, 0.0)
+        corners = radius * np.array([np.cos(angle), thin * np.sin(angle)])
+        S = UniformFriction(Part(corners.T), 10.0 ** rng.uniform(-3, 3))
+        boundary = S.support_point(rng.normal(size=(100, 3)) * [1, 1, 10.0 ** rng.uniform(-2, 2)])
+        near = 1.0 + rng.choice([-1, 1], 40) * 10.0 ** rng.uniform(-9, -2, 40)
+        shares = np.concatenate([rng.choice([0.01, 0.5, 0.99, 1.01, 2, 100, 1e6], 60), near])
+        turn, condition = np.linalg.qr(rng.normal(size=(3, 3)))[0], 10.0 ** rng.uniform(0, 8)
+        W = turn @ np.diag([1.0, np.sqrt(condition), condition]) @ turn.T
+        p = boundary * shares[:, None]
+        found = S.project(p, W)
+        assert np.array_equal(found.inside, shares < 1.0)
+        size = np.sqrt(np.einsum("ij,jk,ik->i", p, W, p)) + np.sqrt(
+            np.einsum("ij,jk,ik->i", boundary, W, boundary)
+        )
+        assert np.all(found.error_bound <= 1e-9 * size)
+        assert found.iterations.max() <= 25
+
+
 def test_loads_on_the_boundary_are_told_apart(friction, rng):
     boundary = friction.support_point(rng.normal(size=(30, 3)))
     assert friction.project(boundary * (1.0 - 1e-9)).inside.all()

@@ -22,13 +22,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from limitsurf.kernels.clipped_triangle import Clip, clip, moments, new_clip, start_triangle
+from limitsurf.kernels.clipped_triangle import clip, moments, new_clip, start_triangle, triangle
 from limitsurf.kernels.compile import Floats, Ints, compiled
 
 __all__ = ["JACOBIAN", "LOAD", "POTENTIAL", "STATE", "Pieces", "density_states", "new_state"]
 
 LOAD, POTENTIAL, JACOBIAN, STATE = 0, 3, 4, 13  # places in a state
+_CLEAR = 1e-12  # of its size: a triangle that close to a border is clipped
 _GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
+
+Room = tuple[Floats, Ints]
 
 
 class Pieces(NamedTuple):
@@ -72,53 +75,108 @@ def _add_area(m: Floats, b: Floats, A: Floats, level: float, out: Floats) -> Non
 
 @compiled
 def _add_border(
-    p: Floats, q: Floats, n: Floats, weight: float, b: Floats, A: Floats, J: Floats
+    p: tuple[float, float],
+    q: tuple[float, float],
+    n: tuple[float, float],
+    sign: float,
+    work: Floats,
+    A: Floats,
+    J: Floats,
 ) -> None:
     """Subtract what the part loses over a chord from p to q of a border with outer normal n."""
-    length = weight * math.hypot(q[0] - p[0], q[1] - p[1])
+    length = sign * math.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2)
     for share in _GAUSS:
         x, y = p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])
-        fx = 0.5 * length * (b[0] + A[0, 0] * x + A[0, 1] * y)
-        fy = 0.5 * length * (b[1] + A[1, 0] * x + A[1, 1] * y)
-        for k in range(3):
-            rate = n[k] if k < 2 else n[1] * x - n[0] * y
-            J[0, k] -= fx * rate
-            J[1, k] -= fy * rate
-            J[2, k] -= (x * fy - y * fx) * rate
+        fx = 0.5 * length * (work[6] + A[0, 0] * x + A[0, 1] * y)
+        fy = 0.5 * length * (work[7] + A[1, 0] * x + A[1, 1] * y)
+        m, turning = x * fy - y * fx, n[1] * x - n[0] * y
+        J[0, 0] -= fx * n[0]
+        J[0, 1] -= fx * n[1]
+        J[0, 2] -= fx * turning
+        J[1, 0] -= fy * n[0]
+        J[1, 1] -= fy * n[1]
+        J[1, 2] -= fy * turning
+        J[2, 0] -= m * n[0]
+        J[2, 1] -= m * n[1]
+        J[2, 2] -= m * turning
+
+
+@compiled
+def _where(x0: float, y0: float, x1: float, y1: float, normals: Floats, bounds: Floats) -> int:
+    """Return 1 if a triangle lies well within a region, -1 well outside, 0 where it may be cut."""
+    place, slack = 1, _CLEAR * (abs(x0) + abs(y0) + abs(x1) + abs(y1))
+    for h in range(bounds.shape[0]):
+        one = normals[h, 0] * x0 + normals[h, 1] * y0
+        two = normals[h, 0] * x1 + normals[h, 1] * y1
+        if min(one, two, 0.0) > bounds[h] + slack:
+            return -1
+        if not max(one, two, 0.0) < bounds[h] - slack:
+            place = 0
+    return place
+
+
+@compiled
+def _add_cut(
+    normals: Floats,
+    bounds: Floats,
+    corners: Floats,
+    labels: Ints,
+    sign: float,
+    work: Floats,
+    A: Floats,
+    J: Floats,
+) -> None:
+    """Clip the triangle that lies in the first place; add its moments and what cut it."""
+    k, n = 0, 3
+    for h in range(bounds.shape[0]):
+        n = clip(corners, labels, k, n, normals[h, 0], normals[h, 1], bounds[h], h)
+        k = 1 - k
+    parts = moments(corners, k, n)
+    work[0] += parts[0]
+    work[1] += parts[1]
+    work[2] += parts[2]
+    work[3] += parts[3]
+    work[4] += parts[4]
+    work[5] += parts[5]
+    for i in range(n):
+        h = labels[k, i]
+        if h >= 0:
+            j = i + 1 if i + 1 < n else 0
+            p, q = (corners[k, i, 0], corners[k, i, 1]), (corners[k, j, 0], corners[k, j, 1])
+            _add_border(p, q, (normals[h, 0], normals[h, 1]), sign, work, A, J)
 
 
 @compiled
 def _add_piece(
-    edges: Floats, pieces: Pieces, k: int, pose: Floats, room: Clip, work: Floats, out: Floats
+    edges: Floats, pieces: Pieces, k: int, pose: Floats, room: Room, work: Floats, out: Floats
 ) -> None:
-    """Add one piece to the state of a part whose edges are placed about its centre of mass."""
-    A, a, m = pieces.slope[k], pieces.anchor[k], work[:6]
-    dx, dy = pose[0] - a[0], pose[1] - a[1]
+    """Add one piece to the state of a part whose edges are placed about its centre of mass.
+
+    `work` has room for the moments (6) and for the density at the centre of mass (2).
+    """
+    normals = pieces.normal[pieces.start[k] : pieces.start[k + 1]]
+    bounds = pieces.bound[pieces.start[k] : pieces.start[k + 1]] - normals @ pose[:2]
+    A, dx, dy = pieces.slope[k], pose[0] - pieces.anchor[k, 0], pose[1] - pieces.anchor[k, 1]
     sx, sy = A[0, 0] * dx + A[0, 1] * dy, A[1, 0] * dx + A[1, 1] * dy
-    b = work[6:8]
-    b[0], b[1] = pieces.force[k, 0] + sx, pieces.force[k, 1] + sy
-    level = pieces.level[k] - pieces.force[k, 0] * dx - pieces.force[k, 1] * dy
-    level -= 0.5 * (dx * sx + dy * sy)
-    J = out[JACOBIAN:].reshape(3, 3)
-    m[:] = 0.0
+    fx, fy = pieces.force[k, 0], pieces.force[k, 1]
+    work[:6], work[6], work[7] = 0.0, fx + sx, fy + sy
+    J, (corners, labels) = out[JACOBIAN:].reshape(3, 3), room
+    m0 = mx = my = xx = xy = yy = 0.0
     for i in range(edges.shape[0]):
-        x0, y0, x1, y1 = edges[i]
-        side = 0 if x0 * y1 >= x1 * y0 else 1
-        place, n = 0, start_triangle(room, x0, y0, x1, y1)
-        for h in range(pieces.start[k], pieces.start[k + 1]):
-            c = pieces.normal[h]
-            n = clip(room, place, n, c, pieces.bound[h] - c[0] * pose[0] - c[1] * pose[1], h)
-            place = 1 - place
-        corners, labels = room.corners[place], room.labels[place]
-        parts = moments(corners, n)
-        for j in range(6):
-            m[j] += parts[j]
-        for j in range(n):
-            if labels[j] >= 0:
-                to = corners[j + 1 if j + 1 < n else 0]
-                sign = 1.0 if side == 0 else -1.0
-                _add_border(corners[j], to, pieces.normal[labels[j]], sign, b, A, J)
-    _add_area(m, b, A, level, out)
+        x0, y0, x1, y1 = edges[i, 0], edges[i, 1], edges[i, 2], edges[i, 3]
+        where = _where(x0, y0, x1, y1, normals, bounds)
+        if where == 0:
+            start_triangle(corners, labels, x0, y0, x1, y1)
+            sign = 1.0 if x0 * y1 >= x1 * y0 else -1.0
+            _add_cut(normals, bounds, corners, labels, sign, work, A, J)
+        elif where == 1:
+            parts = triangle(x0, y0, x1, y1)
+            m0, mx, my = m0 + parts[0], mx + parts[1], my + parts[2]
+            xx, xy, yy = xx + parts[3], xy + parts[4], yy + parts[5]
+    for j, whole in enumerate((m0, mx, my, xx, xy, yy)):
+        work[j] += whole
+    level = pieces.level[k] - fx * dx - fy * dy - 0.5 * (dx * sx + dy * sy)
+    _add_area(work[:6], work[6:8], A, level, out)
 
 
 @compiled

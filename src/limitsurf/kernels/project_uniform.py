@@ -216,8 +216,10 @@ def project_uniform(
             answer[k], answer[TWIST + k] = room.sums[1 + k], twist[k]
         answer[STATUS] = OUTSIDE
     answer[BOUND], answer[COUNT] = bound, count
-    if bound > target:
-        answer[STATUS] = LOOSE if bound <= _LOOSE * scale else FAILED
+    if bound > _LOOSE * scale:
+        answer[STATUS] = FAILED
+    elif bound > target and not held:
+        answer[STATUS] = LOOSE
 
 
 @compiled
