@@ -7,7 +7,8 @@ integrates over a triangulation. Friction: the paper T; contacts are those of a 
 pressure, cut finer and finer; errors are distances from the exact answer over the size of the load.
 Arrays: `resonator64` with pixels of other pitch, point tips and no grip, squeezing the paper T
 towards a line at 0.3 rad; root mean squares of the differences from the density, loads in units of
-push and circumradius; powers from the three finest pitches.
+push and circumradius; powers from the three finest pitches. Then random parts: hard closest points,
+and what rises on the way to rest.
 """
 
 import os
@@ -29,6 +30,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.field_motion import field_motion
 from limitsurf.motion.simulate import simulate
+from limitsurf.planning.turn_function import turn_function
 
 LOADS = 200
 ARRAY = load_array("resonator64")
@@ -154,8 +156,63 @@ def arrays():
     print("| power of the pitch | " + " | ".join(f"{r:.2f}" for r in rates) + " |")
 
 
+def star(rng, thin=1.0):
+    """Return a random part, hardly ever convex."""
+    n = rng.integers(4, 40)
+    angle = 2 * np.pi / n * (np.arange(n) + rng.uniform(0.0, 0.8, n))
+    radius = rng.uniform(0.3, 2.0, n)
+    return Part(np.column_stack([radius * np.cos(angle), thin * radius * np.sin(angle)]), 1.0)
+
+
+def hard_loads():
+    """Print how closest points fare on slender parts, in stretched metrics, near the boundary."""
+    rng, counts, worst, most, wrong = np.random.default_rng(1), np.zeros(4, int), 0.0, 0, 0
+    for _ in range(150):
+        S = UniformFriction(star(rng, 10 ** rng.uniform(-1.7, 0)), 10 ** rng.uniform(-3, 3))
+        boundary = S.support_point(rng.normal(size=(200, 3)) * [1, 1, 10 ** rng.uniform(-2, 2)])
+        near = 1 + rng.choice([-1, 1], 50) * 10 ** rng.uniform(-14, -2, 50)
+        share = np.concatenate([rng.choice([0.01, 0.5, 0.99, 1.01, 2, 100, 1e6], 150), near])
+        turn, stretch = np.linalg.qr(rng.normal(size=(3, 3)))[0], 10 ** rng.uniform(0, 8)
+        root = np.diag([1, stretch**0.25, stretch**0.5]) @ turn.T
+        p = boundary * share[:, None]
+        found = S.project(p, root.T @ root, throw=False)
+        size = np.linalg.norm(p @ root.T, axis=1) + np.linalg.norm(boundary @ root.T, axis=1)
+        counts += np.bincount(found.status, minlength=4)
+        worst, most = (
+            max(worst, (found.error_bound / size).max()),
+            max(most, found.iterations.max()),
+        )
+        wrong += np.sum((found.inside != (share < 1)) & (abs(share - 1) > 1e-10))
+    print(
+        f"\n30000 hard loads: status outside, inside, failed, loose {counts}; {wrong} on the wrong"
+    )
+    print(f"side; at most {most} iterations; largest bound {worst:.1e} of the load")
+
+
+def uphill():
+    """Print how often the reduced potential rises on the way to rest in a squeeze field."""
+    rng, field = np.random.default_rng(5), DensityField.squeeze(0.0, 1.0)
+    for where in ("anywhere", "on the median"):
+        rises, own = [], []
+        for _ in range(40):
+            part = star(rng)
+            turn, drag = turn_function(part), (part.area, part.area, part.polar_moment)
+            for phi in rng.uniform(0.0, 2 * np.pi, 3):
+                y = part.circumradius * rng.uniform(-1, 1)
+                y = y if where == "anywhere" else -turn.median(phi)[0]
+                path = field_motion(part, field, (0, y, phi), 1e4, mode="quasi-static", drag=drag)
+                U, V = turn.potential(path.poses[:, 2]), field.potential(part, path.poses)
+                rises.append((U - np.minimum.accumulate(U)).max() / U[0])
+                own.append(np.diff(V).max() / V[0])
+        count, most = np.sum(np.array(rises) > 1e-9), max(rises)
+        print(f"starts {where}: reduced U rises in {count} of 120, by up to {most:.1e};")
+        print(f"the potential in {np.sum(np.array(own) > 1e-12)}")
+
+
 if __name__ == "__main__":
     loads()
     friction()
     motions()
     arrays()
+    hard_loads()
+    uphill()

@@ -1,6 +1,8 @@
 """Motion in force densities: closed forms, energy, rest, friction, and the limit of arrays."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -416,6 +418,13 @@ def test_bad_arguments_are_named(more, argument):
     with pytest.raises(InputError) as found:
         field_motion(CARD, SQUEEZE, **more)
     assert found.value.argument == argument
+
+
+def test_the_example_of_the_docs_runs(capsys):
+    page = (Path(__file__).parents[2] / "docs" / "fields.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(code, "fields.md", "exec"), {})
+    assert "at rest" in capsys.readouterr().out
 
 
 def test_a_mass_needs_an_areal_density():

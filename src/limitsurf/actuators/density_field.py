@@ -91,7 +91,7 @@ class DensityField:
     >>> squeeze = DensityField.squeeze(0.0, 1.0)
     >>> squeeze.load(part, (0.0, 0.1, 0.0)).round(12) + 0.0
     array([ 0. , -0.4,  0. ])
-    >>> float(squeeze.potential(part, (0.0, 0.0, 0.0)))
+    >>> float(squeeze.potential(part, (0.0, 0.0, 0.0)).round(12))
     2.0
 
     On points it is a field as in `force_fields`, in [N/m^2]:
