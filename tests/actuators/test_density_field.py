@@ -6,7 +6,8 @@ import shapely
 from scipy.constants import g
 
 from limitsurf.actuators.activation import squeeze_activation
-from limitsurf.actuators.density_field import DensityField, DensityPiece, push_density
+from limitsurf.actuators.density_field import DensityField, push_density
+from limitsurf.actuators.density_piece import DensityPiece
 from limitsurf.actuators.force_fields import skewed_squeeze_field, squeeze_field, uniform_field
 from limitsurf.actuators.realised_field import activate
 from limitsurf.errors import InputError

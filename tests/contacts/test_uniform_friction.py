@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from scipy.constants import g
 
 from limitsurf.contacts.friction_load import friction_load
 from limitsurf.contacts.uniform_friction import UniformFriction
@@ -183,6 +184,14 @@ def test_a_traction_must_be_positive(traction):
     with pytest.raises(InputError) as found:
         UniformFriction(L, traction)
     assert found.value.argument == "traction"
+
+
+def test_a_part_that_lies_flat_rubs_with_its_weight():
+    part = Part(L, 0.8)
+    S = UniformFriction.under_weight(part, 0.25)
+    assert S.support([0.0, 1.0, 0.0]) == pytest.approx(0.25 * part.mass * g, rel=1e-14)
+    with pytest.raises(InputError, match="areal_density"):
+        UniformFriction.under_weight(Part(L), 0.25)
 
 
 def test_the_kink_at_rest_has_no_hessian():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -11,64 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.constants import g
 
 from limitsurf.actuators.actuator_array import ActuatorArray
+from limitsurf.actuators.density_piece import DensityPiece, finite
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.density import JACOBIAN, POTENTIAL, STATE, Pieces, density_states
-from limitsurf.sets.arguments import as_array, as_number, as_points
+from limitsurf.sets.arguments import as_array, as_points
 
-__all__ = ["DensityField", "DensityPiece", "push_density"]
+__all__ = ["DensityField", "push_density"]
 
 Array = NDArray[np.float64]
 
 _EVERYWHERE = np.empty((0, 2))
-
-
-@dataclass(frozen=True, eq=False)
-class DensityPiece:
-    """A force density ``force + slope (x - anchor)`` on the region ``normals x <= bounds``.
-
-    Attributes
-    ----------
-    force : (2,) float
-        Density at the anchor [N/m^2].
-    slope : (2, 2) float, optional
-        Its derivative [N/m^3]; zero by default.
-    anchor : (2,) float, optional
-        Where the density is `force` [m]; the origin by default.
-    normals, bounds : (h, 2) and (h,) float, optional
-        Half-planes, any lengths of the normals; the whole plane by default.
-    level : float, optional
-        Potential at the anchor [N/m], if the field has one: it must be continuous across borders.
-    """
-
-    force: Array
-    slope: Array
-    anchor: Array
-    normals: Array
-    bounds: Array
-    level: float | None
-
-    def __init__(
-        self,
-        force: ArrayLike,
-        slope: ArrayLike = ((0.0, 0.0), (0.0, 0.0)),
-        anchor: ArrayLike = (0.0, 0.0),
-        normals: ArrayLike = (),
-        bounds: ArrayLike = (),
-        level: float | None = None,
-    ) -> None:
-        ways = as_array("normals", normals, None, 2)
-        length = np.hypot(*ways.T)
-        if not (length > 0.0).all():
-            raise InputError("normals", "has rows of zeros", remedy="leave these half-planes out")
-        object.__setattr__(self, "force", as_array("force", force, 2))
-        object.__setattr__(self, "slope", as_array("slope", slope, 2, 2))
-        object.__setattr__(self, "anchor", as_array("anchor", anchor, 2))
-        object.__setattr__(self, "normals", ways / length[:, None])
-        object.__setattr__(self, "bounds", as_array("bounds", bounds, len(ways)) / length)
-        object.__setattr__(self, "level", None if level is None else _number("level", level))
-        if level is not None and self.slope[0, 1] != self.slope[1, 0]:
-            raise InputError("level", "needs a symmetric slope", remedy="leave out the level")
 
 
 class DensityField:
@@ -109,7 +62,7 @@ class DensityField:
     @classmethod
     def uniform(cls, angle: float, density: float) -> DensityField:
         """Return the same push along `angle` [rad] everywhere, of a density [N/m^2]."""
-        return cls([DensityPiece(_number("density", density) * _unit(angle), level=0.0)])
+        return cls([DensityPiece(finite("density", density) * _unit(angle), level=0.0)])
 
     @classmethod
     def squeeze(cls, line: float, density: float, offset: float = 0.0) -> DensityField:
@@ -128,10 +81,10 @@ class DensityField:
         Without potential unless the skew is zero; see `force_fields.skewed_squeeze_field`.
         """
         along, normal = _unit(line), _unit(line + 0.5 * np.pi)
-        if not abs(as_number("skew", skew)) < 0.5 * np.pi:
+        if not abs(finite("skew", skew)) < 0.5 * np.pi:
             raise InputError("skew", "must lie between -pi/2 and pi/2", value=skew)
-        push = _number("density", density) * (np.sin(skew) * along + np.cos(skew) * normal)
-        z, level = _number("offset", offset), 0.0 if skew == 0.0 else None
+        push = finite("density", density) * (np.sin(skew) * along + np.cos(skew) * normal)
+        z, level = finite("offset", offset), 0.0 if skew == 0.0 else None
         left = DensityPiece(-push, anchor=z * normal, normals=[-normal], bounds=[-z], level=level)
         right = DensityPiece(push, anchor=z * normal, normals=[normal], bounds=[z], level=level)
         return cls([left, right])
@@ -164,7 +117,7 @@ class DensityField:
         ``field.scaled(1 / push_density(part, array))`` gives pushes in units of an actuator's, for
         `activate` and `realise`.
         """
-        by = _number("factor", factor)
+        by = finite("factor", factor)
         return DensityField(
             replace(
                 piece,
@@ -249,15 +202,8 @@ def push_density(part: Part, array: ActuatorArray) -> float:
     return float(array.pixel.friction * array.pixel.offset_fraction * part.mass / part.area * g)
 
 
-def _number(name: str, value: float) -> float:
-    number = as_number(name, value)
-    if not np.isfinite(number):
-        raise InputError(name, "must be finite", value=value)
-    return number
-
-
 def _unit(angle: float) -> Array:
-    _number("angle", angle)
+    finite("angle", angle)
     way = np.array([np.cos(angle), np.sin(angle)])
     way[np.abs(way) < 1e-15] = 0.0
     return way

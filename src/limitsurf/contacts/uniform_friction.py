@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from scipy.constants import g
 
 from limitsurf.conic.form import ConicForm
 from limitsurf.contacts.contact_set import ContactSet
@@ -58,6 +59,11 @@ class UniformFriction(ConvexSet):
             raise InputError("traction", "must be positive", value=traction)
         self._part = outline if isinstance(outline, Part) else Part(outline)
         self._center = np.zeros(2) if isinstance(outline, Part) else np.array(self._part.centroid)
+
+    @classmethod
+    def under_weight(cls, part: Part, mu: float) -> UniformFriction:
+        """Return the friction of a part that lies flat: traction ``mu * areal density * g``."""
+        return cls(part, as_number("mu", mu) * part.mass / part.area * g)
 
     @property
     def part(self) -> Part:

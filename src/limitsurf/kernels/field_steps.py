@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.contact_problem import Rows
 from limitsurf.kernels.density import Pieces, density_states, new_state
 from limitsurf.kernels.project_uniform import ANSWER, BOUND, TWIST, project_uniform
 from limitsurf.kernels.uniform_friction import Room, UniformPatch, new_room
@@ -68,13 +69,7 @@ def uniform_step(
         out[6] = 0.0
         return False
     c, s, B, answer = math.cos(theta), math.sin(theta), body.unit, out[7:]
-    first, second = (B[0, 0], 0.0, 0.0), (0.0, B[1, 1], 0.0)
-    third = (B[2, 0], B[2, 1], B[2, 2])
-    rows = (
-        along(scaled(c, first), -s, second),
-        along(scaled(s, first), c, second),
-        third,
-    )
+    rows = _world_rows(B, c, s)
     C = (
         scaled(1.0 / math.sqrt(Q[0]), rows[0]),
         scaled(1.0 / math.sqrt(Q[1]), rows[1]),
@@ -91,8 +86,19 @@ def uniform_step(
     for k in range(3):
         out[3 + k] = rows[k][0] * answer[0] + rows[k][1] * answer[1] + rows[k][2] * answer[2]
     out[6] = answer[BOUND]
-    held = answer[TWIST] == 0.0 and answer[TWIST + 1] == 0.0 and answer[TWIST + 2] == 0.0
-    return bool(held)
+    return bool(vx == 0.0 and vy == 0.0 and w == 0.0)
+
+
+@compiled
+def _world_rows(B: Floats, c: float, s: float) -> Rows:
+    """Return the rows of the map from loads of the kernels to loads in world axes."""
+    first, second = (B[0, 0], 0.0, 0.0), (0.0, B[1, 1], 0.0)
+    third = (B[2, 0], B[2, 1], B[2, 2])
+    return (
+        along(scaled(c, first), -s, second),
+        along(scaled(s, first), c, second),
+        third,
+    )
 
 
 @compiled
@@ -148,41 +154,39 @@ def field_steps(
     """
     pose, old = np.array(start[0]), np.array(start[1])
     dt, steps, stride = times
-    Q = body.mass / dt + body.drag
-    state, out, room, F = new_state(), np.zeros(7 + ANSWER), new_room(), np.zeros(6)
-    new, energies, placed = old.copy(), np.zeros(5), pose.copy().reshape(1, 3)
-    for k in range(3):
-        energies[0] += 0.5 * body.mass[k] * old[k] * old[k]
+    Q, F = body.mass / dt + body.drag, np.zeros(6)
+    state, out, room, placed = new_state(), np.zeros(7 + ANSWER), new_room(), np.zeros((1, 3))
+    energies, constant = np.zeros(5), loads.shape[0] == 1
+    energies[0] = 0.5 * (body.mass * old * old).sum()
     worst, written, rests = 0.0, 0, False
     for step in range(steps + 1):
-        over = rests or step == steps
         placed[0] = pose
         density_states(body.edges, placed, pieces, state)
-        load = loads[min(step, loads.shape[0] - 1)]
-        momentum, size = body.mass * old / dt, 0.0
-        for k in range(3):
-            F[k] = state[0, k] + load[k]
-            size += momentum[k] * momentum[k]
+        momentum = body.mass * old / dt
+        F[:3] = state[0, :3] + loads[min(step, loads.shape[0] - 1)]
         held = uniform_step(body, pose[2], F[:3] + momentum, Q, tol, room, out)
-        if loads.shape[0] == 1 and held and size == 0.0:
-            rests, over = True, True
+        new, F[3:] = out[:3].copy(), out[3:6]
+        rests = rests or (constant and held and not momentum.any())
+        over = rests or step == steps
         if over or step % stride == 0:
             frame = frames[written]
-            frame[0] = step * dt
-            frame[1:4] = pose
-            frame[4:7] = old if body.mass[0] > 0.0 else out[:3]
-            frame[7:10] = state[0, :3] + out[3:6]
-            frame[10] = out[6] * math.sqrt(Q[0])
-            frame[ENERGIES:] = energies
+            frame[0], frame[1:4] = step * dt, pose
+            frame[4:7] = old if body.mass[0] > 0.0 else new
+            frame[7:10] = state[0, :3] + F[3:]
+            frame[10], frame[ENERGIES:] = out[6] * math.sqrt(Q[0]), energies
             written += 1
         if over:
             break
-        new[:], F[3:] = out[:3], out[3:6]
         worst = max(worst, out[6])
         _add_energies(body, old, new, F, dt, energies)
         pose += dt * new
-        speed = math.hypot(new[0], new[1]) + body.reach * abs(new[2])
-        change = math.hypot(new[0] - old[0], new[1] - old[1]) + body.reach * abs(new[2] - old[2])
-        rests = loads.shape[0] == 1 and max(speed, change * rest[1] / dt) <= rest[0]
-        old[:] = new
+        change = _rim_speed(new - old, body.reach) * rest[1] / dt
+        rests = constant and max(_rim_speed(new, body.reach), change) <= rest[0]
+        old = new
     return rests, written, worst
+
+
+@compiled
+def _rim_speed(twist: Floats, reach: float) -> float:
+    """Return the largest speed of a point within reach."""
+    return float(math.hypot(twist[0], twist[1]) + reach * abs(twist[2]))
