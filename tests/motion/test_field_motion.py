@@ -230,6 +230,23 @@ def test_a_part_that_friction_holds_stays(method):
         assert moving.final_pose[0] > 1e-3
 
 
+def test_a_mass_that_turns_back_starts_again():
+    """Pulled to the middle with little friction it swings; each turn is a stop and a start.
+
+    Translation in a linear density: half a period each, the swing smaller by 2 mu N / k.
+    """
+    field, S = DensityField.linear(6.0), UniformFriction(CARD, 0.5)
+    path = field_motion(CARD, field, (1.0, 0.0, 0.0), 20.0, friction=S)
+    starts = [e.time for e in path.events if e.kind is EventKind.START]
+    assert starts == pytest.approx(np.pi / 2 * np.arange(6), abs=1e-6)
+    assert path.outcome is Outcome.REST
+    assert path.duration == pytest.approx(3 * np.pi, abs=1e-6)
+    assert path.final_pose == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    at = [path.poses[np.searchsorted(path.times, t), 0] for t in starts]
+    swings = (-1.0) ** np.arange(6) * (1.0 - np.arange(6) / 6.0)
+    assert at == pytest.approx(swings, abs=1e-6)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_without_loads_nothing_moves_or_keeps_moving(method):
     path = field_motion(CARD, NOTHING, (1.0, 2.0, 3.0), method=method)

@@ -84,7 +84,8 @@ def field_motion(
     Returns
     -------
     Trajectory
-        `loads` are those of field and friction; `tips` are zeros.
+        `loads` are those of field and friction; `tips` are zeros. Events: rest, and with
+        ``"events"`` each start of a mass from where friction stopped or held it.
 
     Notes
     -----

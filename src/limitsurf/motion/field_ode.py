@@ -36,6 +36,11 @@ class _Record:
             self.times.append(time)
             self.states.append(state)
 
+    def started(self, time: float, rests: bool) -> None:
+        """Add the event that a part starts from a stop, unless it rests."""
+        if not rests:
+            self.events.append(MotionEvent(time, EventKind.START))
+
 
 def field_ode(
     problem: FieldProblem, pose: Array, twist: Array, limit: float, tolerance: float, frames: int
@@ -53,6 +58,7 @@ def field_ode(
     rests = problem.steady and _restless(problem, time, state) <= 0.0
     if stops and rests:
         rests, state = _started(problem, state)
+        record.started(time, rests)
     while not rests and time < limit:
         time, state, stopped = _slide(problem, record, time, state, limit, tolerance, frames)
         if not stopped:
@@ -61,6 +67,7 @@ def field_ode(
         if stops:
             rests, state, lasts = _stopped(problem, state)
             time += lasts
+            record.started(time, rests)
         record.add(time, state)
     if rests:
         record.events.append(MotionEvent(time, EventKind.REST))
@@ -160,17 +167,16 @@ def _stopped(problem: FieldProblem, state: Array) -> tuple[bool, Array, float]:
 
     Friction and pull hardly change before the stop: the speed falls linearly.
     """
-    v, pull = state[3:6], _pull(problem, 0.0, state)
-    held, after = _started(problem, state)
+    v, pull, after = state[3:6], _pull(problem, 0.0, state), state.copy()
     friction = problem.sliding_friction(state[2], v)
-    force = -(pull + friction - problem.drag * v) @ v
-    if not (held and force > 0.0):
-        return held, after, 0.0
-    lasts = float(v @ (problem.mass * v) / force)
-    after[:3] += 0.5 * lasts * v
-    lost = (pull @ v / 2.0, -friction @ v / 2.0, problem.drag @ (v * v) / 3.0)
-    after[6:] += lasts * np.array(lost)
-    return True, after, lasts
+    force, lasts = -(pull + friction - problem.drag * v) @ v, 0.0
+    if force > 0.0:
+        lasts = float(v @ (problem.mass * v) / force)
+        after[:3] += 0.5 * lasts * v
+        lost = (pull @ v / 2.0, -friction @ v / 2.0, problem.drag @ (v * v) / 3.0)
+        after[6:] += lasts * np.array(lost)
+    held, after = _started(problem, after)
+    return held, after, lasts
 
 
 def polished(problem: FieldProblem, time: float, pose: Array) -> Array:
