@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from limitsurf.actuators.actuator_array import load_array as load_array
     from limitsurf.actuators.carrying import Carried as Carried
     from limitsurf.actuators.carrying import carry as carry
+    from limitsurf.actuators.density_field import DensityField as DensityField
+    from limitsurf.actuators.density_field import push_density as push_density
+    from limitsurf.actuators.density_piece import DensityPiece as DensityPiece
     from limitsurf.actuators.field_error import direction_errors as direction_errors
     from limitsurf.actuators.field_error import load_error as load_error
     from limitsurf.actuators.force_fields import elliptic_field as elliptic_field
@@ -48,8 +51,10 @@ if TYPE_CHECKING:
     from limitsurf.contacts.project_many import project_many as project_many
     from limitsurf.contacts.soft_contact import SoftContact as SoftContact
     from limitsurf.contacts.tip_dissipation import TipDissipation as TipDissipation
+    from limitsurf.contacts.uniform_friction import UniformFriction as UniformFriction
     from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
+    from limitsurf.motion.field_motion import field_motion as field_motion
     from limitsurf.motion.pushing import Push as Push
     from limitsurf.motion.pushing import push as push
     from limitsurf.motion.pushing import push_along as push_along
@@ -95,6 +100,8 @@ _HOME = {
     "ContactSet": "contacts.contact_set",
     "ContactSum": "sets.contact_sum",
     "ConvexSet": "sets.convex_set",
+    "DensityField": "actuators.density_field",
+    "DensityPiece": "actuators.density_piece",
     "Ellipsoid": "sets.ellipsoid",
     "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
@@ -122,6 +129,7 @@ _HOME = {
     "TorsionalResonator": "actuators.torsional_resonator",
     "Trajectory": "motion.trajectory",
     "TurnFunction": "planning.turn_function",
+    "UniformFriction": "contacts.uniform_friction",
     "VPolytope": "sets.v_polytope",
     "Verification": "planning.verification",
     "Wheel": "contacts.wheel",
@@ -133,6 +141,7 @@ _HOME = {
     "direction_errors": "actuators.field_error",
     "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
+    "field_motion": "motion.field_motion",
     "force_scaling": "actuators.rim_force",
     "friction_load": "contacts.friction_load",
     "headings": "actuators.pixel_lattice",
@@ -144,6 +153,7 @@ _HOME = {
     "project_many": "contacts.project_many",
     "push": "motion.pushing",
     "push_along": "motion.pushing",
+    "push_density": "actuators.density_field",
     "radial_field": "actuators.force_fields",
     "realise": "actuators.realised_field",
     "section": "sets.sections",
