@@ -137,12 +137,18 @@ def _rest(run: Run, time: float) -> None:
 
 
 @compiled
+def _length_of_piece(load: Load, t: float) -> float:
+    """Return the length of the piece of a load at a time: a time in which it changes."""
+    i = piece_of(load, t)
+    return float(load.pieces[i, 1] - load.pieces[i, 0])
+
+
+@compiled
 def _start(run: Run) -> None:
     """Set a part that is not held in motion."""
     state, feet, load = run.state, run.feet, run.load
     speed = run.tol * state[SCALE]
-    i = piece_of(load.ends, state[T])
-    longest = 0.1 * (load.ends[i + 1] - load.ends[i])
+    longest = 0.1 * _length_of_piece(load, state[T])
     s, v = start_moving(run.holder, load, feet.push, state[TURN], state[T], speed, longest)
     state[RESTING] = 0.0
     path = turned(scaled(s / 3.0, v), -state[TURN])
@@ -298,8 +304,7 @@ def _move(run: Run, end: float) -> None:
     if whole < np.inf and change > 0.0:
         longest = min(longest, max(_SHARE * whole, 0.1 * run.tol * state[SCALE] / change))
     if freedom.pivot >= 0 and run.load.kind == VARIES:
-        i = piece_of(run.load.ends, state[T])
-        longest = min(longest, 0.1 * (run.load.ends[i + 1] - run.load.ends[i]))
+        longest = min(longest, 0.1 * _length_of_piece(run.load, state[T]))
     wanted = state[PROPOSED]
     h = min(wanted, longest, end - state[T])
     while True:

@@ -41,7 +41,7 @@ class Holder(NamedTuple):
     """Contacts scaled by the radius of gyration of a quadratic term Q, and room for answers.
 
     `places` are the contacts as they are; `numbers` are the second moments of the scaled ones (6),
-    and first and last entry of Q.
+    first and last entry of Q, and the radius of a ball of scaled loads that are all held.
     """
 
     places: Floats
@@ -57,7 +57,7 @@ def new_holder(places: Floats) -> Holder:
     """Return a holder of contacts, rows x, y, m and for ellipses xx, xy, yy of S; Q is not set."""
     n = places.shape[1]
     return Holder(
-        places, places.copy(), np.zeros(8), new_table(n), new_best(), np.empty((0, 2))
+        places, places.copy(), np.zeros(9), new_table(n), new_best(), np.empty((0, 2))
     )
 
 
@@ -71,7 +71,27 @@ def set_quadratic(holder: Holder, first: float, last: float) -> None:
     for k in range(6):
         holder.numbers[k] = moments[k]
     holder.numbers[6], holder.numbers[7] = first, last
+    holder.numbers[8] = _held_radius(holder)
     holder.best[EPS] = _COLD
+
+
+@compiled
+def _held_radius(holder: Holder) -> float:
+    r"""Return the radius of a ball in the contact sum.
+
+    The support function is :math:`\sum m |P^T d| \ge \sum m |P^T d|^2 / \max |P|`, which is at least
+    the least eigenvalue of the second moments over :math:`\max |P|`; and that is at least
+    :math:`4 \det / \mathrm{trace}^2`.
+    """
+    data, largest2, stretched = holder.data, 0.0, 1.0
+    for i in range(data.shape[1]):
+        if data.shape[0] > 3:
+            stretched = data[3, i] ** 2 + 2.0 * data[4, i] ** 2 + data[5, i] ** 2
+        largest2 = max(largest2, stretched * (1.0 + data[0, i] ** 2 + data[1, i] ** 2))
+    xx, xy, yy, xw, yw, ww = _moments(holder.numbers)
+    det = xx * (yy * ww - yw * yw) - xy * (xy * ww - yw * xw) + xw * (xy * yw - yy * xw)
+    trace = xx + yy + ww
+    return max(4.0 * det / trace**2, 0.0) / math.sqrt(largest2) if trace > 0.0 else 0.0
 
 
 @compiled

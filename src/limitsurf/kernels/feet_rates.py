@@ -21,13 +21,11 @@ import math
 from typing import NamedTuple
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.contact_pass import BLOCK, Contacts, sum_block
-from limitsurf.kernels.contact_totals import new_table
 from limitsurf.kernels.load_table import CONSTANT, NONE, Load, load_at, turned
 from limitsurf.kernels.symmetric3 import Symmetric
 from limitsurf.kernels.vectors import Vector, along, dot
 
-__all__ = ["FREE", "Feet", "Freedom", "Rate", "acceleration", "friction", "new_feet", "rate", "total_load", "turning_about"]
+__all__ = ["FREE", "Feet", "Freedom", "Rate", "acceleration", "curvature", "friction", "new_feet", "rate", "total_load", "turning_about"]
 
 _STILL2 = 1e-280  # squares of speeds that are zero: such contacts have no direction
 _ZERO = (0.0, 0.0, 0.0)
@@ -42,7 +40,6 @@ class Feet(NamedTuple):
     """
 
     data: Floats
-    table: Floats
     push: Vector
     mass: float
     inertia: float
@@ -79,7 +76,6 @@ def new_feet(places: Floats, body: Floats) -> Feet:
         far2 = max(far2, places[0, i] ** 2 + places[1, i] ** 2)
     return Feet(
         places.copy(),
-        new_table(places.shape[1]),
         (body[5], body[6], body[7]),
         body[0],
         body[1],
@@ -89,18 +85,51 @@ def new_feet(places: Floats, body: Floats) -> Feet:
 
 
 @compiled
-def friction(feet: Feet, v: Vector, curved: bool) -> tuple[Vector, Symmetric]:
-    """Return g, and H where it is asked for."""
-    data, table = feet.data, feet.table
-    contacts, n = Contacts(data, 1, None), data.shape[1]
-    total = table[table.shape[0] - 1]
-    total[:] = 0.0
-    for q in range(-(-n // BLOCK)):
-        sum_block(contacts, q, v, 0.0, _STILL2, curved, table[q])
-        for k in range(1, 10):
-            total[k] += table[q, k]
-    g = total[1], total[2], total[3]
-    return g, (total[4], total[5], total[6], total[7], total[8], total[9])
+def friction(data: Floats, v: Vector) -> Vector:
+    """Return g; contacts that do not move count for nothing."""
+    gx = gy = gw = 0.0
+    elliptic = data.shape[0] > 3
+    for i in range(data.shape[1]):
+        x, y = data[0, i], data[1, i]
+        ux, uy = v[0] - v[2] * y, v[1] + v[2] * x
+        if elliptic:
+            a, b, d = data[3, i], data[4, i], data[5, i]
+            ux, uy = a * ux + b * uy, b * ux + d * uy
+        speed2 = ux * ux + uy * uy
+        still = speed2 < _STILL2
+        k = (0.0 if still else data[2, i]) / math.sqrt(speed2 + (1.0 if still else 0.0))
+        fx, fy = k * ux, k * uy
+        if elliptic:
+            a, b, d = data[3, i], data[4, i], data[5, i]
+            fx, fy = a * fx + b * fy, b * fx + d * fy
+        gx += fx
+        gy += fy
+        gw += x * fy - y * fx
+    return gx, gy, gw
+
+
+@compiled
+def curvature(data: Floats, v: Vector) -> Symmetric:
+    """Return H: ``sum m/s (G q)(G q)'``, q the direction S e turned by a right angle."""
+    xx = xy = yy = xw = yw = ww = 0.0
+    for i in range(data.shape[1]):
+        x, y, a, b, d = data[0, i], data[1, i], 1.0, 0.0, 1.0
+        ux, uy = v[0] - v[2] * y, v[1] + v[2] * x
+        if data.shape[0] > 3:
+            a, b, d = data[3, i], data[4, i], data[5, i]
+            ux, uy = a * ux + b * uy, b * ux + d * uy
+        speed2 = ux * ux + uy * uy
+        if speed2 >= _STILL2:
+            k = data[2, i] / (speed2 * math.sqrt(speed2))
+            qx, qy = b * ux - a * uy, d * ux - b * uy
+            qw = x * qy - y * qx
+            xx += k * qx * qx
+            xy += k * qx * qy
+            yy += k * qy * qy
+            xw += k * qx * qw
+            yw += k * qy * qw
+            ww += k * qw * qw
+    return xx, xy, yy, xw, yw, ww
 
 
 @compiled
@@ -145,6 +174,6 @@ def total_load(feet: Feet, F: Vector, g: Vector, v: Vector) -> Vector:
 def rate(feet: Feet, freedom: Freedom, load: Load, t: float, v: Vector, theta: float) -> Rate:
     """Return the rates at a state."""
     F, by_time, by_angle = body_load(feet, load, t, theta)
-    g, _ = friction(feet, v, False)
+    g = friction(feet.data, v)
     Q = total_load(feet, F, g, v)
     return Rate(acceleration(feet, freedom, Q, v), F, g, by_time, by_angle)

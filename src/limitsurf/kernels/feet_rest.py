@@ -1,9 +1,8 @@
 r"""When a resting part starts to move under a load that changes, and how.
 
-The loads that the contacts hold are a convex set, and a load stays within the Bernstein
-coefficients of its pieces (``load_table``): an interval whose coefficients lie in a box that is
-held is passed over as a whole; others are halved, until one is left at whose end the load is not
-held. There Newton's method on the certified distance, the derivative of which is that of the load
+The loads that the contacts hold are a convex set, and a load stays in the convex hull of its
+Bernstein coefficients (``load_table``): an interval is passed over as a whole if they are held;
+others are halved, until one is left at whose end the load is not held. There Newton's method on the certified distance, the derivative of which is that of the load
 along the normal, finds the instant.
 """
 
@@ -20,7 +19,7 @@ from limitsurf.kernels.vectors import Vector, along, dot, scaled
 
 __all__ = ["exit_time", "is_held", "start_moving"]
 
-_SHORT, _SHORTEST = 1.0 / 64.0, 1.0 / 4096.0  # of a piece
+_SHORT, _SHORTEST = 1.0 / 32.0, 1.0 / 4096.0  # of a piece
 
 
 @compiled
@@ -57,23 +56,24 @@ def _split(control: Floats, depth: int, s: float) -> None:
 
 
 @compiled
-def _holds_box(holder: Holder, push: Vector, theta: float, points: Floats) -> bool:
-    """Return whether all loads in the box around points (3, K) are held."""
-    low, high = np.empty(3), np.empty(3)
-    for c in range(3):
-        low[c], high[c] = points[c].min(), points[c].max()
-    for corner in range(8):
-        repeated = False
-        for c in range(3):
-            repeated = repeated or ((corner >> c) & 1 and low[c] == high[c])
-        if repeated:
-            continue
-        x = high[0] if corner & 1 else low[0]
-        y = high[1] if corner & 2 else low[1]
-        m = high[2] if corner & 4 else low[2]
-        if not _is_zero(closest(holder, along(turned((x, y, m), theta), 1.0, push))[0]):
-            return False
-    return True
+def _holds_all(holder: Holder, push: Vector, theta: float, points: Floats) -> bool:
+    r"""Return whether all loads in the convex hull of points (3, K) are held, as far as one can see.
+
+    They are within R of one of them, F, and loads within r of zero are held. If :math:`(1+\beta) F`
+    is held, so are those within :math:`r \beta / (1 + \beta)` of F, for the sum is convex.
+    """
+    n, r = points.shape[1], holder.numbers[8]
+    ratio = holder.numbers[6] / holder.numbers[7]
+    fx, fy, m = points[0, n // 2], points[1, n // 2], points[2, n // 2]
+    far2 = 0.0
+    for k in range(n):
+        dx, dy, dm = points[0, k] - fx, points[1, k] - fy, points[2, k] - m
+        far2 = max(far2, dx * dx + dy * dy + ratio * dm * dm)
+    far = math.sqrt(far2)
+    if far >= r:
+        return False
+    F = along(turned((fx, fy, m), theta), 1.0, push)
+    return _is_zero(closest(holder, scaled(r / (r - far), F))[0])
 
 
 @compiled
@@ -82,24 +82,21 @@ def _root(
 ) -> float:
     """Return the first instant at which a load held at `low` but not at `high` is not."""
     width = high - low
-    guess = high
     for _ in range(80):
-        F, dF = load_at(load, guess)
+        F, dF = load_at(load, high)
         a = closest(holder, along(turned(F, theta), 1.0, push))[0]
-        if _is_zero(a):
-            low = guess
-            guess = 0.5 * (low + high)
-        else:
-            high = guess
-            size = size_of(holder, a)
-            slope = dot(a, turned(dF, theta)) / (holder.numbers[6] * size)
-            guess = high - size / slope if slope > 0.0 else low
-            if not low < guess < high:
-                guess = 0.5 * (low + high)
-            elif size <= slope * 1e-13 * (width + high):
+        size = size_of(holder, a)
+        slope = dot(a, turned(dF, theta)) / (holder.numbers[6] * size)
+        step = size / slope if slope > 0.0 else high - low
+        if step <= 1e-4 * width:
+            return high - step  # Newton's last step, wrong by its square, of a width that is small
+        guess, share = (high - step if step < high - low else 0.5 * (low + high)), 0.01
+        while is_held(holder, load, push, theta, guess):
+            low, guess = guess, guess + share * (high - guess)
+            share = min(4.0 * share, 0.5)
+            if high - low <= 1e-12 * width:
                 return high
-        if high - low <= 1e-13 * (width + high):
-            break
+        high = guess
     return high
 
 
@@ -108,19 +105,19 @@ def exit_time(holder: Holder, load: Load, push: Vector, theta: float, t: float) 
     """Return when a load that is held at a time is first not held; infinity if that is never."""
     if load.kind != VARIES:
         return np.inf
-    n, pieces = load.bernstein.shape[2], load.ends.shape[0] - 1
-    control, ends = np.empty((14, 3, n)), np.empty(15)
-    for i in range(piece_of(load.ends, t), pieces):
-        begin, whole = load.ends[i], load.ends[i + 1] - load.ends[i]
-        control[0] = load.bernstein[i]
+    n, pieces = load.terms, load.pieces
+    control, ends = np.empty((15, 3, n)), np.empty(15)
+    for i in range(piece_of(load, t), pieces.shape[0]):
+        begin, whole = pieces[i, 0], pieces[i, 1] - pieces[i, 0]
+        control[0] = pieces[i, 2 + 3 * n :].reshape(3, n)
         if t > begin:
             _split(control, 0, (t - begin) / whole)
             begin = t
-        depth, ends[0] = 0, load.ends[i + 1]
+        depth, ends[0] = 0, pieces[i, 1]
         while depth >= 0:
             end = ends[depth]
             width = (end - begin) / whole
-            if _holds_box(holder, push, theta, control[depth]):
+            if _holds_all(holder, push, theta, control[depth]):
                 begin, depth = end, depth - 1
             elif width <= _SHORT and not is_held(holder, load, push, theta, end):
                 return _root(holder, load, push, theta, begin, end)

@@ -17,7 +17,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
 from limitsurf.kernels.contact_problem import Rows, inverse_rows, times_rows
-from limitsurf.kernels.feet_rates import Feet, Freedom, Rate, friction, rate, turning_about
+from limitsurf.kernels.feet_rates import Feet, Freedom, Rate, curvature, rate, turning_about
 from limitsurf.kernels.load_table import Load
 from limitsurf.kernels.symmetric3 import Symmetric, times
 from limitsurf.kernels.vectors import Vector, along, scaled
@@ -104,7 +104,7 @@ def rosenbrock_step(
 
     `now` is the rate at the beginning; `U` is room for (6, 4) numbers.
     """
-    _, H = friction(feet, v, True)
+    H = curvature(feet.data, v)
     by_angle = _by_mass(feet, freedom, now.by_angle)
     by_time = _by_mass(feet, freedom, now.by_time)
     step = _GAMMA * h

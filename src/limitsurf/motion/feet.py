@@ -66,7 +66,7 @@ def feet_motion(
     rho = np.sqrt(J / m)
     force = contacts.radius.sum() + np.hypot(*table.largest[:2]) + np.hypot(*contacts.offset_load[:2])
     force += (table.largest[2] + abs(contacts.offset_load[2])) / rho
-    span = np.diff(table.kernel.ends).min()
+    span = table.shortest
     scale = np.sqrt(speed[0] ** 2 + speed[1] ** 2 + rho**2 * speed[2] ** 2)
     if scale == 0.0:
         scale = 1e-3 * force / m * min(span, duration)
