@@ -253,9 +253,7 @@ def _accept(run: Run, freedom: Freedom, now: Rate, h: float, v1: Vector, angle1:
 
 
 @compiled
-def _try(
-    run: Run, freedom: Freedom, now: Rate, h: float
-) -> tuple[Vector, float, float, float]:
+def _try(run: Run, freedom: Freedom, now: Rate, h: float) -> tuple[Vector, float, float, float]:
     """Return twist, angle, error over tolerance, and effort of the pivot after a step h."""
     state, v = run.state, twist(run.state)
     v1, angle1, error = rosenbrock_step(

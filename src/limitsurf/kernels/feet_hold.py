@@ -56,9 +56,7 @@ class Holder(NamedTuple):
 def new_holder(places: Floats) -> Holder:
     """Return a holder of contacts, rows x, y, m and for ellipses xx, xy, yy of S; Q is not set."""
     n = places.shape[1]
-    return Holder(
-        places, places.copy(), np.zeros(9), new_table(n), new_best(), np.empty((0, 2))
-    )
+    return Holder(places, places.copy(), np.zeros(9), new_table(n), new_best(), np.empty((0, 2)))
 
 
 @compiled
@@ -79,8 +77,8 @@ def set_quadratic(holder: Holder, first: float, last: float) -> None:
 def _held_radius(holder: Holder) -> float:
     r"""Return the radius of a ball in the contact sum.
 
-    The support function is :math:`\sum m |P^T d| \ge \sum m |P^T d|^2 / \max |P|`, which is at least
-    the least eigenvalue of the second moments over :math:`\max |P|`; and that is at least
+    The support function is :math:`\sum m |P^T d| \ge \sum m |P^T d|^2 / \max |P|`: at least the
+    least eigenvalue of the second moments over :math:`\max |P|`, and that eigenvalue is at least
     :math:`4 \det / \mathrm{trace}^2`.
     """
     data, largest2, stretched = holder.data, 0.0, 1.0

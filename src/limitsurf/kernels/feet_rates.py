@@ -25,7 +25,19 @@ from limitsurf.kernels.load_table import CONSTANT, NONE, Load, load_at, turned
 from limitsurf.kernels.symmetric3 import Symmetric
 from limitsurf.kernels.vectors import Vector, along, dot
 
-__all__ = ["FREE", "Feet", "Freedom", "Rate", "acceleration", "curvature", "friction", "new_feet", "rate", "total_load", "turning_about"]
+__all__ = [
+    "FREE",
+    "Feet",
+    "Freedom",
+    "Rate",
+    "acceleration",
+    "curvature",
+    "friction",
+    "new_feet",
+    "rate",
+    "total_load",
+    "turning_about",
+]
 
 _STILL2 = 1e-280  # squares of speeds that are zero: such contacts have no direction
 _ZERO = (0.0, 0.0, 0.0)

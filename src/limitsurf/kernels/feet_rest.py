@@ -2,8 +2,9 @@ r"""When a resting part starts to move under a load that changes, and how.
 
 The loads that the contacts hold are a convex set, and a load stays in the convex hull of its
 Bernstein coefficients (``load_table``): an interval is passed over as a whole if they are held;
-others are halved, until one is left at whose end the load is not held. There Newton's method on the certified distance, the derivative of which is that of the load
-along the normal, finds the instant.
+others are halved, until one is left at whose end the load is not held. There Newton's method on
+the certified distance, the derivative of which is that of the load along the normal, finds the
+instant.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def _split(control: Floats, depth: int, s: float) -> None:
 
 @compiled
 def _holds_all(holder: Holder, push: Vector, theta: float, points: Floats) -> bool:
-    r"""Return whether all loads in the convex hull of points (3, K) are held, as far as one can see.
+    r"""Return whether all loads in the convex hull of points (3, K) are held, if one solve can say.
 
     They are within R of one of them, F, and loads within r of zero are held. If :math:`(1+\beta) F`
     is held, so are those within :math:`r \beta / (1 + \beta)` of F, for the sum is convex.
@@ -77,9 +78,7 @@ def _holds_all(holder: Holder, push: Vector, theta: float, points: Floats) -> bo
 
 
 @compiled
-def _root(
-    holder: Holder, load: Load, push: Vector, theta: float, low: float, high: float
-) -> float:
+def _root(holder: Holder, load: Load, push: Vector, theta: float, low: float, high: float) -> float:
     """Return the first instant at which a load held at `low` but not at `high` is not."""
     width = high - low
     for _ in range(80):

@@ -20,13 +20,12 @@ from limitsurf.kernels.feet_run import (
     PIVOT,
     PIVOT_X,
     PIVOT_Y,
-    T,
     TURN,
+    Run,
+    T,
     X,
     Y,
-    Run,
     set_twist,
-    twist,
 )
 from limitsurf.kernels.load_table import turned
 from limitsurf.kernels.vectors import Vector, along

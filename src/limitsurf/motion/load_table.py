@@ -106,14 +106,15 @@ LoadLike = ArrayLike | Callable[[float], ArrayLike] | LoadTable | None
 @cache
 def _rules() -> tuple[Array, Array, Array, Array, Array]:
     """Return nodes, values to series, points between, their matrix, series to Bernstein."""
-    nodes = chebyshev.chebpts1(_TERMS)
+    nodes = np.asarray(chebyshev.chebpts1(_TERMS), dtype=np.float64)
     between = np.array([-0.97, -0.35, 0.4, 0.95])
-    fit = np.linalg.inv(chebyshev.chebvander(nodes, _TERMS - 1))
+    fit = np.asarray(np.linalg.inv(chebyshev.chebvander(nodes, _TERMS - 1)))
     p = _TERMS - 1
     k, x = np.arange(_TERMS), 0.5 * (1.0 + nodes)[:, None]
     bernstein = np.linalg.inv(comb(p, k) * x**k * (1.0 - x) ** (p - k))
     vander = chebyshev.chebvander(nodes, p)
-    return nodes, fit, between, chebyshev.chebvander(between, p), bernstein @ vander
+    check = np.asarray(chebyshev.chebvander(between, p), dtype=np.float64)
+    return nodes, fit, between, check, np.asarray(bernstein @ vander)
 
 
 def _tabulated(load: Callable[[float], ArrayLike], duration: float) -> Load:
@@ -130,7 +131,9 @@ def _tabulated(load: Callable[[float], ArrayLike], duration: float) -> Load:
         wrong = np.abs(check @ c - values[:, _TERMS:]).max(axis=1)
         excess = (wrong / np.maximum(_TOLERANCE * largest, _TINY)).max(axis=1)
         good = excess <= 1.0
-        series = [x.transpose(0, 2, 1).reshape(len(x), 3 * _TERMS) for x in (c[good], bernstein @ c[good])]
+        series = [
+            x.transpose(0, 2, 1).reshape(len(x), 3 * _TERMS) for x in (c[good], bernstein @ c[good])
+        ]
         rows.append(np.column_stack([begin[good], (begin + width)[good], *series]))
         begin, width = _cut(begin[~good], width[~good], excess[~good], duration)
     table = np.concatenate(rows)
