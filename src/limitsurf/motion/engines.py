@@ -1,110 +1,107 @@
-"""Which engine moves a part: checks what `simulate` is given, and chooses."""
+"""Which engine moves a part, by what drives it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from limitsurf.actuators.activation import Activation
-from limitsurf.actuators.actuator_array import ActuatorArray
-from limitsurf.contacts.oscillating_contact import OscillatingContact
+from limitsurf.actuators.density_field import DensityField
+from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.driven import Driven, DrivenMotion, Watch
-from limitsurf.motion.load_table import LoadLike
+from limitsurf.motion.feet import feet_motion
+from limitsurf.motion.field_motion import field_motion
+from limitsurf.motion.in_turn import Move, in_turn
+from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.motion.loads import gravity, with_gravity
+from limitsurf.motion.options import Options, checked_drag, positive
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.time_scales import TimeScales, check_lift, time_scales
 from limitsurf.motion.tip_steps import TipSteps
 from limitsurf.motion.trajectory import Trajectory
-from limitsurf.sets.arguments import as_array, as_number
 from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
-__all__ = ["Drive", "Engine", "Method", "Mode", "Options", "engine_of"]
+__all__ = ["Drive", "Engine", "engine_of"]
 
 Array = NDArray[np.float64]
-Mode = Literal["inertial", "quasi-static"]
-Method = Literal["steps", "events"]
-Drive = Driven
+Drive = Driven | ContactSet | DensityField | Schedule[ContactSet] | Schedule[DensityField]
+
+_MAX_STEPS = 10_000_000
+_LONG = 20.0  # longest adaptive step, in default steps
 
 
 class Engine(Protocol):
     """What moves a part, for at most `duration` [s]."""
 
     @property
-    def duration(self) -> float:
-        """Time limit [s]."""
+    def duration(self) -> float | None:
+        """Time limit [s], if it is known before."""
 
     def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
         """Return the motion from a pose and a twist."""
 
 
-_MAX_STEPS = 10_000_000
-_LONG = 20.0  # longest adaptive step, in default steps
+@dataclass(frozen=True, eq=False)
+class InTurn:
+    """An `Engine` for one drive, or a schedule of drives that each are moved on at once."""
 
+    drive: Any
+    duration: float | None
+    move: Move[Any]
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Options:
-    """Options of `simulate`, which explains them."""
-
-    method: Method = "steps"
-    mode: Mode = "inertial"
-    load: LoadLike = None
-    tilt: ArrayLike = (0.0, 0.0)
-    drag: ArrayLike | None = None
-    tip: OscillatingContact | None = None
-    time_step: float | None = None
-    tolerance: float | None = None
-    frames: int = 200
-
-    def __post_init__(self) -> None:
-        """Check those that need nothing else."""
-        _choice("method", self.method, get_args(Method))
-        _choice("mode", self.mode, get_args(Mode))
-        if self.frames < 1:
-            raise InputError("frames", "must be at least 1", value=self.frames)
-        for name in ("time_step", "tolerance"):
-            if getattr(self, name) is not None:
-                _positive(name, getattr(self, name))
+    def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
+        """Return the motion from a pose and a twist; it is watched only at its end."""
+        if isinstance(self.drive, Schedule):
+            assert self.duration is not None
+            trajectory = in_turn(self.drive.pieces(self.duration), self.move, pose, twist)
+        else:
+            trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
+        if watch is not None:
+            watch(trajectory.duration, None)
+        return trajectory
 
 
 def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) -> Engine:
-    """Return what moves a part: a function of pose and twist that returns a trajectory."""
+    """Return what moves a part."""
     chosen = Options(**options)
-    first = _first_activation(drive)
-    return _on_array(part, drive, first.array, duration, chosen)
-
-
-def _first_activation(drive: Any) -> Activation:
-    """Return what runs first; InputError unless it is an activation."""
-    first = drive.at(0.0) if isinstance(drive, Schedule) else drive
+    limit = None if duration is None else positive("duration", duration)
+    first = drive.entries[0][1] if isinstance(drive, Schedule) else drive
+    if isinstance(first, ContactSet):
+        return _on_feet(part, drive, limit, chosen)
+    if isinstance(first, DensityField):
+        return _in_field(part, drive, limit, chosen)
     first = first(0.0) if callable(first) else first
-    if isinstance(first, Activation):
-        return first
-    raise InputError(
-        "drive",
-        f"is or gives a {type(first).__name__}",
-        remedy="give an Activation, a Schedule of them, or a function of time that returns one",
-    )
+    if not isinstance(first, Activation):
+        raise InputError(
+            "drive",
+            f"is or gives a {type(first).__name__}",
+            remedy="give an Activation or a function of time that returns one, a DensityField, a "
+            "ContactSet, or a Schedule of these",
+        )
+    chosen.refuse("arrays", "friction")
+    return _on_array(part, drive, first, limit, chosen)  # type: ignore[arg-type]
 
 
 def _on_array(
-    part: Part, drive: Driven, array: ActuatorArray, duration: float | None, options: Options
+    part: Part, drive: Driven, first: Activation, duration: float | None, options: Options
 ) -> Engine:
+    array = first.array
     check_lift(part, array)
     weight = gravity(part, options.tilt)
     drag = air_film_drag(part, array)
     if options.drag is not None:
-        drag = _checked_drag(options.drag, options.mode)
+        drag = checked_drag(options.drag, options.mode)
     table = with_gravity(weight, options.load, duration)
     scales = time_scales(part, array, load=table.largest, drag=drag)
-    limit = scales.duration if duration is None else _positive("duration", duration)
+    limit = scales.duration if duration is None else duration
     mass = np.array([part.mass, part.mass, part.inertia])
     if options.mode == "quasi-static":
         mass = np.zeros(3)
@@ -113,6 +110,7 @@ def _on_array(
     every, rest = max(limit / options.frames, dt), REST_SPEED * scales.speed
     stepper: ArraySteps | TipSteps
     if options.tip is not None:
+        options.refuse("steps with a tip", "tolerance")
         stepper = TipSteps(part, body, table, options.tip, dt, every, rest)
     else:
         stepper = ArraySteps(body, Pace(dt, options.tolerance or 0.0, CONTACT_STEP, rest), every)
@@ -129,27 +127,66 @@ def _longest_step(options: Options, scales: TimeScales, limit: float) -> float:
     return dt
 
 
-def _checked_drag(given: ArrayLike, mode: Mode) -> Array:
-    drag = as_array("drag", given, 3)
-    if not (np.isfinite(drag).all() and (drag >= 0.0).all()):
-        raise InputError("drag", "must be finite and at least 0", value=tuple(drag.tolist()))
-    if mode == "quasi-static" and not drag.all():
-        raise InputError(
-            "drag",
-            "must be positive in quasi-static mode, where it alone limits the speed",
-            value=tuple(drag.tolist()),
-            remedy="use mode='inertial' or give all three",
+def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options) -> Engine:
+    options.refuse("feet", "tip", "friction")
+    if duration is None:
+        raise InputError("duration", "is missing", remedy="give it for parts on feet")
+    table = with_gravity(gravity(part, options.tilt), options.load, duration)
+    given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
+
+    def move(feet: ContactSet, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+        return feet_motion(
+            part,
+            feet,
+            q,
+            time,
+            twist=v,
+            load=_from(table, begin),
+            drag=options.drag,
+            mode=options.mode,
+            time_step=options.time_step,
+            tolerance=options.tolerance,
+            frames=options.frames,
+            **given,
         )
-    return drag
+
+    return InTurn(drive, duration, move)
 
 
-def _choice(name: str, value: str, known: tuple[str, ...]) -> None:
-    if value not in known:
-        raise InputError(name, "is unknown", value=value, remedy=f"use {' or '.join(known)}")
+def _in_field(part: Part, drive: Drive, duration: float | None, options: Options) -> Engine:
+    options.refuse("force fields", "tip")
+    if duration is None and isinstance(drive, Schedule):
+        raise InputError("duration", "is missing", remedy="give it for schedules")
+    load: LoadLike = options.load
+    if np.any(options.tilt):
+        load = with_gravity(gravity(part, options.tilt), options.load, duration)
+    given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
+    if options.tolerance is not None:
+        given["tolerance"] = options.tolerance
+
+    def move(field: DensityField, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+        return field_motion(
+            part,
+            field,
+            q,
+            time,
+            twist=v,
+            mode=options.mode,
+            drag=options.drag,
+            friction=options.friction,
+            load=_from(load, begin),
+            time_step=options.time_step,
+            frames=options.frames,
+            **given,
+        )
+
+    return InTurn(drive, duration, move)
 
 
-def _positive(name: str, value: float) -> float:
-    number = as_number(name, value)
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(name, "must be positive", value=value)
-    return float(number)
+def _from(load: LoadLike, begin: float) -> LoadLike:
+    """Return a load as a function of the time since `begin`."""
+    if isinstance(load, LoadTable) and load.steady:
+        return load(0.0)
+    if begin == 0.0 or not callable(load):
+        return load
+    return lambda t: load(begin + t)
