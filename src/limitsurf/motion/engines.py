@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 Drive = Driven | ContactSet | DensityField | Schedule[ContactSet] | Schedule[DensityField]
 
 _MAX_STEPS = 10_000_000
+_USUALLY = 6.0  # the default time limit is that much longer than a squeeze of paper takes
 _LONG = 20.0  # longest adaptive step, in default steps
 
 
@@ -107,7 +108,8 @@ def _on_array(
         mass = np.zeros(3)
     body = Body(part.circumradius, part.edges, weight.normal, mass, drag, table.kernel)
     dt = _longest_step(options, scales, limit)
-    every, rest = max(limit / options.frames, dt), REST_SPEED * scales.speed
+    usual = limit if duration is not None else limit / _USUALLY
+    every, rest = max(usual / options.frames, dt), REST_SPEED * scales.speed
     stepper: ArraySteps | TipSteps
     if options.tip is not None:
         options.refuse("steps with a tip", "tolerance")
