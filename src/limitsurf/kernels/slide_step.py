@@ -144,7 +144,7 @@ def new_motion(pose: Floats, twist: Floats) -> Floats:
     return motion
 
 
-@inlined
+@compiled
 def _place(edges: Floats, motion: Floats, out: Floats) -> None:
     """Move the edges to the pose."""
     x, y, theta = motion[POSE], motion[POSE + 1], motion[POSE + 2]
@@ -155,7 +155,7 @@ def _place(edges: Floats, motion: Floats, out: Floats) -> None:
             out[i, k + 1] = y + sin * edges[i, k] + cos * edges[i, k + 1]
 
 
-@inlined
+@compiled
 def find_tips(
     body: Body, ground: Ground, motion: Floats, spans: Spans, work: Work
 ) -> tuple[int, Spans]:
@@ -170,7 +170,7 @@ def find_tips(
     return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, spans
 
 
-@inlined
+@compiled
 def _normal(body: Body, tips: Tips) -> float:
     """Return the weight on a tip of share 1."""
     return body.weight / tips.sums[SHARE] if tips.numbers[COUNT] > 0 else np.inf
