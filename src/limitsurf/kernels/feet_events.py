@@ -341,9 +341,8 @@ def _begin(run: Run) -> None:
 @compiled
 def _start_again(run: Run) -> None:
     """Set a part that rested in motion, and say so."""
-    write_event(run, START, -1)
+    _happened(run, START, -1)
     _start(run)
-    record(run, _load_now(run))
 
 
 @compiled
