@@ -64,6 +64,8 @@ __all__ = ["feet_events"]
 
 _SHARE = 0.9  # of the time that the next contact has left
 _TOGETHER = 1e-3  # of the speed left when a contact stops: the others stop with it
+_MANY = 100.0  # speeds of that many tolerances are small beside those of other contacts
+_GROWTH, _HALVED = 16.0, 8.0  # of the square of a speed; an error that halves the step
 _LEAST = 1e-15
 
 
@@ -100,11 +102,13 @@ def _time_left(run: Run, v: Vector, change: Vector) -> tuple[float, int, float, 
         ux, uy = contact_velocity(contacts, i, v)
         dx, dy = contact_velocity(contacts, i, change)
         square, fall = ux * ux + uy * uy, -(ux * dx + uy * dy)
-        if m[i] > 0.0 and (fall > 0.0 or square == 0.0):
+        if m[i] > 0.0 and (fall > 0.0 or square <= small * small):
             time = square / fall if fall > 0.0 else 0.0
             negligible = small * feet.mass / (2.0 * m[i] * feet.arm)
-            longest = min(longest, max(_SHARE * time, negligible))
-            if time <= negligible and square < slowest:
+            if fall > 0.0:
+                longest = min(longest, max(_SHARE * time, negligible))
+            slow = time <= negligible or square <= small * small
+            if slow and square < slowest:
                 first, left, slowest = i, time, square
     ratio = feet.inertia / feet.mass
     fall = -(v[0] * change[0] + v[1] * change[1] + ratio * v[2] * change[2])
@@ -187,7 +191,7 @@ def _settle(run: Run, now: Rate, first: int, left: float, whole: float) -> bool:
     if first < 0 or state[PIVOT] >= 0.0:
         return False
     after = along(v, left, now.v)
-    if size_of(run.holder, after) <= max(_TOGETHER * speed, small):
+    if size_of(run.holder, after) <= max(_TOGETHER * speed, _MANY * small):
         return False
     ux, uy = contact_velocity(Contacts(run.feet.data, 1, None), first, v)
     if stick(run, first, after):
@@ -291,6 +295,25 @@ def _slip(run: Run, freedom: Freedom, now: Rate, high: float, excess: float) -> 
 
 
 @compiled
+def _outgrown(run: Run, v0: Vector, v1: Vector, change: float, h: float) -> bool:
+    """Return whether a slow contact became several times as fast within a step.
+
+    The stiffness of the step was that of its beginning, and hides its errors.
+    """
+    feet, contacts = run.feet, Contacts(run.feet.data, 1, None)
+    m, small = feet.data[2], run.tol * run.state[SCALE]
+    for i in range(m.shape[0]):
+        if m[i] * h * feet.arm > 0.5 * small * feet.mass:
+            ux, uy = contact_velocity(contacts, i, v0)
+            wx, wy = contact_velocity(contacts, i, v1)
+            least = change * 0.5 * small * feet.mass / m[i]  # what it gains in a negligible time
+            before, after = ux * ux + uy * uy, wx * wx + wy * wy
+            if after > _GROWTH * max(before, least * least):
+                return True
+    return False
+
+
+@compiled
 def _move(run: Run, end: float) -> None:
     """Take one step of a moving part, or let a contact stick."""
     state, v, freedom = run.state, twist(run.state), freedom_of(run)
@@ -308,8 +331,11 @@ def _move(run: Run, end: float) -> None:
     while True:
         state[STEPS] += 1
         v1, angle1, wrong, e = _try(run, freedom, now, h)
-        if wrong <= 1.0 or h <= _LEAST * state[T]:
+        if h <= _LEAST * state[T]:
             break
+        if wrong <= 1.0 and not _outgrown(run, v, v1, change, h):
+            break
+        wrong = max(wrong, _HALVED)
         h *= max(0.1, 0.85 * wrong**-0.25) if wrong < np.inf else 0.1
         wanted = h
     if e > 1.0:
