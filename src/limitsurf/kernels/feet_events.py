@@ -107,9 +107,9 @@ def _time_left(run: Run, v: Vector, change: Vector) -> tuple[float, int, float, 
             negligible = small * feet.mass / (2.0 * m[i] * feet.arm)
             if fall > 0.0:
                 longest = min(longest, max(_SHARE * time, negligible))
-            slow = time <= negligible or square <= small * small
-            if slow and square < slowest:
-                first, left, slowest = i, time, square
+            soon = time <= negligible
+            if (soon or square <= small * small) and square < slowest:
+                first, left, slowest = i, time if soon else 0.0, square
     ratio = feet.inertia / feet.mass
     fall = -(v[0] * change[0] + v[1] * change[1] + ratio * v[2] * change[2])
     whole = size_of(run.holder, v) ** 2 / fall if fall > 0.0 else np.inf
