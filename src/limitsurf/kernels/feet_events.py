@@ -66,6 +66,7 @@ _SHARE = 0.9  # of the time that the next contact has left
 _TOGETHER = 1e-3  # of the speed left when a contact stops: the others stop with it
 _MANY = 100.0  # speeds of that many tolerances are small beside those of other contacts
 _GROWTH, _HALVED = 16.0, 8.0  # of the square of a speed; an error that halves the step
+_GO_ON, _CHANGED, _APPROACH = 0, 1, 2
 _LEAST = 1e-15
 
 
@@ -163,7 +164,7 @@ def _start(run: Run) -> None:
     state[WORK] += kinetic(feet, v)  # what friction takes of it is as small
     set_twist(state, v)
     state[PROPOSED] = s
-    _find_pivot(run, v, 1e-6)
+    _find_pivot(run, v, 1e-4)
 
 
 @compiled
@@ -175,33 +176,36 @@ def _find_pivot(run: Run, v: Vector, share: float) -> None:
         if run.radii[i] > 0.0 and ux * ux + uy * uy < slowest:
             slowest, k = ux * ux + uy * uy, i
     if k >= 0 and slowest <= (share * size_of(run.holder, v)) ** 2:
-        stick(run, k, v)
+        stick(run, k, v, True)
 
 
 @compiled
-def _settle(run: Run, now: Rate, first: int, left: float, whole: float) -> bool:
-    """Let the part rest or a contact stick if it is time to; return whether the state changed."""
+def _settle(run: Run, now: Rate, first: int, left: float, whole: float) -> int:
+    """Let the part rest, or a contact stick, if it is time to; return what is to be done."""
     state, v = run.state, twist(run.state)
     speed, small = size_of(run.holder, v), run.tol * state[SCALE]
-    if speed <= small and whole < np.inf:
-        change = size_of(run.holder, now.v)
-        if whole * change <= 4.0 * speed:
-            _rest(run, whole)
-            return True
+    change = size_of(run.holder, now.v)
+    if speed <= small and whole * change <= 4.0 * speed:
+        _rest(run, whole)
+        return _CHANGED
     if first < 0 or state[PIVOT] >= 0.0:
-        return False
-    after = along(v, left, now.v)
-    if size_of(run.holder, after) <= max(_TOGETHER * speed, _MANY * small):
-        return False
+        return _GO_ON
+    together = size_of(run.holder, along(v, left, now.v))
+    if together <= max(_TOGETHER * speed, _MANY * small):
+        return _GO_ON
     ux, uy = contact_velocity(Contacts(run.feet.data, 1, None), first, v)
-    if stick(run, first, after):
+    slow = math.sqrt(ux * ux + uy * uy)
+    if slow > 4.0 * small:  # a weak contact, with time left that is negligible if it passes
+        return _APPROACH if stick(run, first, v, False) else _GO_ON
+    left = left if left * change <= 4.0 * small else 0.0
+    if stick(run, first, along(v, left, now.v), True):
         state[T] += left
         _happened(run, STICK, first)
-        return True
-    if math.sqrt(ux * ux + uy * uy) <= 1e-6 * small:
+        return _CHANGED
+    if slow <= 1e-6 * small:
         set_twist(state, nudged(run, first, v, 1e-3 * small))
-        return True
-    return False
+        return _CHANGED
+    return _GO_ON
 
 
 @compiled
@@ -319,8 +323,11 @@ def _move(run: Run, end: float) -> None:
     state, v, freedom = run.state, twist(run.state), freedom_of(run)
     now = rate(run.feet, freedom, run.load, state[T], v, state[TURN])
     longest, first, left, whole = _time_left(run, v, now.v)
-    if _settle(run, now, first, left, whole):
+    what = _settle(run, now, first, left, whole)
+    if what == _CHANGED:
         return
+    if what == _APPROACH:
+        longest = min(longest, _SHARE * left)
     change = size_of(run.holder, now.v)
     if whole < np.inf and change > 0.0:
         longest = min(longest, max(_SHARE * whole, 0.1 * run.tol * state[SCALE] / change))

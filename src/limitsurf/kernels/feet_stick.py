@@ -163,17 +163,18 @@ def without_velocity(feet: Feet, i: int, v: Vector, ux: float, uy: float) -> Vec
 
 
 @compiled
-def stick(run: Run, k: int, v: Vector) -> bool:
-    """Make contact k a pivot if it holds the part; return whether."""
+def stick(run: Run, k: int, v: Vector, really: bool) -> bool:
+    """Return whether contact k holds the part; then make it a pivot, if that is meant."""
     feet, state = run.feet, run.state
     x, y = feet.data[0, k], feet.data[1, k]
     v = without_velocity(feet, k, v, v[0] - v[2] * y, v[1] + v[2] * x)
     v = v[2] * y, -v[2] * x, v[2]
     hold_at(run, k)
     now = rate(feet, Freedom(k, x, y), run.load, state[T], v, state[TURN])
-    if effort(run, k, now, v) > 1.0 - 10.0 * run.tol:  # one that just slipped does not stick
+    holds = effort(run, k, now, v) <= 1.0 - 10.0 * run.tol  # one that just slipped does not
+    if not (holds and really):
         let_go(run)
-        return False
+        return holds
     set_twist(state, v)
     arm = turned((x, y, 0.0), -state[TURN])
     state[PIVOT], state[PIVOT_X], state[PIVOT_Y] = k, state[X] + arm[0], state[Y] + arm[1]
