@@ -50,7 +50,7 @@ def test_tolerances_are_kept_and_energy_balances(rng):
         feet, arguments = a_motion(rng)
         exact = feet_motion(PLATE, feet, tolerance=1e-10, **arguments)
         seen |= {event.kind for event in exact.events}
-        for tolerance, allowed in ((1e-6, 1e-3), (1e-8, 1e-5)):
+        for tolerance, allowed in ((1e-6, 1e-4), (1e-8, 1e-6)):
             path = feet_motion(PLATE, feet, tolerance=tolerance, **arguments)
             assert off(path, exact) < allowed
             energy = path.energy
@@ -58,6 +58,17 @@ def test_tolerances_are_kept_and_energy_balances(rng):
             assert np.abs(energy.residual).max() <= allowed * size
             assert (np.diff(path.times) > 0).all()
     assert seen == {EventKind.STICK, EventKind.SLIP, EventKind.START, EventKind.REST}
+
+
+def test_weak_feet_hold_nothing_back(rng):
+    """Starts about one of many feet, which does not stick."""
+    for _ in range(10):
+        place = rng.uniform(-0.06, 0.06, (200, 2))
+        feet = ContactSet(place, rng.dirichlet(np.full(200, 0.3)) * GRIP)
+        twist = 4.0 * np.array([place[0, 1], -place[0, 0], 1.0])
+        exact = feet_motion(PLATE, feet, twist=twist, tolerance=1e-10)
+        assert off(feet_motion(PLATE, feet, twist=twist, tolerance=1e-6), exact) < 2e-6
+        assert off(feet_motion(PLATE, feet, twist=twist, tolerance=1e-8), exact) < 2e-8
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -99,18 +99,19 @@ def _slip(run: Run, freedom: Freedom, now: Rate, high: float, excess: float) -> 
 def _outgrown(run: Run, v0: Vector, v1: Vector, change: float, h: float) -> bool:
     """Return whether a slow contact became several times as fast within a step.
 
-    The stiffness of the step was that of its beginning, and hides its errors.
+    The stiffness of the step was that of its beginning: it holds back even a weak contact with
+    any force, and hides the error.
     """
     feet, contacts = run.feet, Contacts(run.feet.data, 1, None)
-    m, small = feet.data[2], run.tol * run.state[SCALE]
+    m, least = feet.data[2], 0.5 * run.tol * run.state[SCALE]
+    if change * h <= least:
+        return False
     for i in range(m.shape[0]):
-        if m[i] * h * feet.arm > 0.5 * small * feet.mass:
-            ux, uy = contact_velocity(contacts, i, v0)
-            wx, wy = contact_velocity(contacts, i, v1)
-            least = change * 0.5 * small * feet.mass / m[i]  # what it gains in a negligible time
-            before, after = ux * ux + uy * uy, wx * wx + wy * wy
-            if after > _GROWTH * max(before, least * least):
-                return True
+        ux, uy = contact_velocity(contacts, i, v0)
+        wx, wy = contact_velocity(contacts, i, v1)
+        before, after = ux * ux + uy * uy, wx * wx + wy * wy
+        if m[i] > 0.0 and after > _GROWTH * max(before, least * least):
+            return True
     return False
 
 
