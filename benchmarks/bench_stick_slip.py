@@ -218,7 +218,7 @@ def compare(contacts, driven):
     for name, method in (("odeint", by_odeint), ("solve_ivp LSODA", by_solve_ivp)):
         grid = [
             (f"eps {eps:g}, rtol {rtol:g}", eps, rtol, share * rtol)
-            for eps in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+            for eps in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 3e-8)
             for rtol in (1e-3, 1e-4, 1e-5, 1e-6)
             for share in (1e-2, 1e-3)
         ]

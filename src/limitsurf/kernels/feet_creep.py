@@ -170,6 +170,7 @@ def feet_creep(
                 state[T], state[RESTING] = state[EXIT], 0.0
                 state[PROPOSED] = 1e-6 * duration
                 write_event(run, START, -1)
+                record(run, _load_now(run))
                 _leave(run, duration)
             elif load.kind == VARIES:
                 state[T] = end

@@ -43,7 +43,7 @@ from limitsurf.kernels.feet_run import (
     twist,
     write_event,
 )
-from limitsurf.kernels.load_table import VARIES, Load, load_at, turned
+from limitsurf.kernels.load_table import VARIES, Load, load_at, piece_of, turned
 from limitsurf.kernels.vectors import Vector, along, dot, scaled
 
 __all__ = ["feet_steps"]
@@ -108,6 +108,9 @@ def _controlled(run: Run, half: Holder, inertial: float, end: float, spare: Floa
     state, before, one = run.state, spare[0], spare[1]
     _copy(state, before)
     wanted = state[PROPOSED]
+    if run.load.kind == VARIES:
+        i = piece_of(run.load, state[T])
+        wanted = min(wanted, 0.05 * (run.load.pieces[i, 1] - run.load.pieces[i, 0]))
     while True:
         dt = min(wanted, end - state[T])
         last = dt == end - state[T]

@@ -4,9 +4,11 @@ A contact at r that has stopped sticks if the force that keeps it there lies wit
 The part then turns about it with :math:`\dot v = p \dot\omega`; the force is what the motion of the
 centre of mass asks for, and :math:`Q` does not give,
 
-.. math:: f = m (\dot a - \omega b, \dot b + \omega a) - (Q_x, Q_y), \qquad |S^{-1} f| \le m_i .
+.. math:: f = m (\dot a - \omega b, \dot b + \omega a) - (Q_x, Q_y), \qquad
+          f \cdot d \le m_i |S_i d| \quad \text{for all } d .
 
-Contacts at the same place share it.
+Contacts at the same place, up to 1e-7 of the radius of gyration, share it: it must lie in the sum
+of their sets.
 """
 
 from __future__ import annotations
@@ -42,6 +44,8 @@ __all__ = [
     "without_velocity",
 ]
 
+_NEAR = 1e-7  # radii of gyration: contacts that close move alike, to that accuracy
+
 
 @compiled
 def freedom_of(run: Run) -> Freedom:
@@ -70,23 +74,67 @@ def _unstretched(feet: Feet, i: int, fx: float, fy: float) -> tuple[float, float
 
 @compiled
 def _same_place(feet: Feet, i: int, j: int) -> bool:
-    data = feet.data
-    same = data[0, i] == data[0, j] and data[1, i] == data[1, j]
-    for k in range(3, data.shape[0]):
-        same = same and data[k, i] == data[k, j]
-    return bool(same)
+    data, near = feet.data, _NEAR * math.sqrt(feet.inertia / feet.mass)
+    return bool(abs(data[0, i] - data[0, j]) <= near and abs(data[1, i] - data[1, j]) <= near)
+
+
+@compiled
+def _support(run: Run, pivot: int, dx: float, dy: float) -> float:
+    """Return ``sum m |S d|`` of the contacts at a place."""
+    total, contacts = 0.0, Contacts(run.feet.data, 1, None)
+    for i in range(run.radii.shape[0]):
+        if _same_place(run.feet, i, pivot):
+            a, b, d = stretch_of(contacts, i)
+            px, py = a * dx + b * dy, b * dx + d * dy
+            total += run.radii[i] * math.sqrt(px * px + py * py)
+    return total
+
+
+@compiled
+def _gauge(run: Run, pivot: int, fx: float, fy: float) -> tuple[float, float, float]:
+    r"""Return the largest :math:`f \cdot d / \sum m |S d|` over directions d, and that direction.
+
+    For ellipses of one shape it is :math:`|S^{-1} f| / \sum m`, with :math:`d = S^{-2} f`. For
+    others at one place the ratio is quasi-concave where it is positive: golden sections.
+    """
+    feet, alike = run.feet, True
+    for i in range(run.radii.shape[0]):
+        if _same_place(feet, i, pivot):
+            for k in range(3, feet.data.shape[0]):
+                alike = alike and feet.data[k, i] == feet.data[k, pivot]
+    if alike:
+        dx, dy = _unstretched(feet, pivot, fx, fy)
+        dx, dy = _unstretched(feet, pivot, dx, dy)
+    else:
+        dx, dy = _steepest(run, pivot, fx, fy)
+    support = _support(run, pivot, dx, dy)
+    return (fx * dx + fy * dy) / support if support > 0.0 else 0.0, dx, dy
+
+
+@compiled
+def _steepest(run: Run, pivot: int, fx: float, fy: float) -> tuple[float, float]:
+    """Return the direction of the largest ratio, by golden sections (J. Kiefer, 1953)."""
+    middle, share = math.atan2(fy, fx), 0.5 * (math.sqrt(5.0) - 1.0)
+    low, high = middle - 0.5 * math.pi, middle + 0.5 * math.pi
+    size, width = math.sqrt(fx * fx + fy * fy), high - low
+    for _ in range(50):
+        width *= share
+        one, two = high - width, low + width
+        first = size * math.cos(one - middle) / _support(run, pivot, math.cos(one), math.sin(one))
+        second = size * math.cos(two - middle) / _support(run, pivot, math.cos(two), math.sin(two))
+        if first > second:
+            high = two
+        else:
+            low = one
+    best = 0.5 * (low + high)
+    return math.cos(best), math.sin(best)
 
 
 @compiled
 def effort(run: Run, pivot: int, now: Rate, v: Vector) -> float:
-    """Return ``|S^-1 f|`` over the friction of the contacts at the pivot: above 1 they slip."""
-    friction = 0.0
-    for i in range(run.radii.shape[0]):
-        if _same_place(run.feet, i, pivot):
-            friction += run.radii[i]
+    """Return the force at the pivot over the friction there: above 1 it slips."""
     fx, fy = _needed(run.feet, now, v)
-    gx, gy = _unstretched(run.feet, pivot, fx, fy)
-    return math.sqrt(gx * gx + gy * gy) / friction
+    return _gauge(run, pivot, fx, fy)[0]
 
 
 @compiled
@@ -115,17 +163,18 @@ def without_velocity(feet: Feet, i: int, v: Vector, ux: float, uy: float) -> Vec
 
 
 @compiled
-def stick(run: Run, k: int, v: Vector) -> bool:
-    """Make contact k a pivot if it holds the part; return whether."""
+def stick(run: Run, k: int, v: Vector, really: bool) -> bool:
+    """Return whether contact k holds the part; then make it a pivot, if that is meant."""
     feet, state = run.feet, run.state
     x, y = feet.data[0, k], feet.data[1, k]
     v = without_velocity(feet, k, v, v[0] - v[2] * y, v[1] + v[2] * x)
     v = v[2] * y, -v[2] * x, v[2]
     hold_at(run, k)
     now = rate(feet, Freedom(k, x, y), run.load, state[T], v, state[TURN])
-    if effort(run, k, now, v) > 1.0:
+    holds = effort(run, k, now, v) <= 1.0 - 10.0 * run.tol  # one that just slipped does not
+    if not (holds and really):
         let_go(run)
-        return False
+        return holds
     set_twist(state, v)
     arm = turned((x, y, 0.0), -state[TURN])
     state[PIVOT], state[PIVOT_X], state[PIVOT_Y] = k, state[X] + arm[0], state[Y] + arm[1]
@@ -151,8 +200,7 @@ def nudged(run: Run, k: int, v: Vector, speed: float) -> Vector:
     now = rate(feet, Freedom(k, x, y), run.load, state[T], still, state[TURN])
     fx, fy = _needed(feet, now, still)
     let_go(run)
-    gx, gy = _unstretched(feet, k, fx, fy)
-    gx, gy = _unstretched(feet, k, gx, gy)
+    _, gx, gy = _gauge(run, k, fx, fy)
     size = math.sqrt(gx * gx + gy * gy)
     if size == 0.0:
         return v

@@ -90,6 +90,7 @@ def feet_motion(
         Of "steps" [s], rounded so that frames are met; without it steps are controlled.
     tolerance : float, optional
         Local errors of twists over the largest speed; 1e-8 for "events", 1e-4 for "steps".
+        Loads that change are known to 1e-10.
     frames : int
         Frames at equal distances in time; "events" adds one at each event.
 
@@ -109,7 +110,8 @@ def feet_motion(
     Notes
     -----
     Speeds of twists are measured by :math:`|v|^2 = v_x^2 + v_y^2 + \omega^2 J/m`. Contacts that
-    stick at two places hold the part; so at most one place sticks while the part moves.
+    stick at two places hold the part; so at most one place sticks while the part moves. Contacts
+    within 1e-7 radii of gyration of each other are at one place.
 
     Examples
     --------
