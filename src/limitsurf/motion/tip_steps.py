@@ -122,7 +122,8 @@ class TipSteps:
         rests, load, bound = False, np.zeros(3), 0.0
         if dt > 0.0:
             rests, load, bound = self._solve(tips, motion, dt)
-        if show or rests or before[TIME] >= motion[NEXT_FRAME] - 1e-9 * self.step:
+        due = dt > 0.0 and before[TIME] >= motion[NEXT_FRAME] - 1e-9 * self.step
+        if show or rests or due:
             count = len(tips.position)
             rows.append(_frame(before, motion, load, bound, count, self.body))
             motion[NEXT_FRAME] = self.every * (np.floor(before[TIME] / self.every + 1e-9) + 1.0)
