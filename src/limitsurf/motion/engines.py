@@ -16,14 +16,14 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.driven import Driven, DrivenMotion, Watch
+from limitsurf.motion.driven import Driven, DrivenMotion, Watch, as_activation
 from limitsurf.motion.load_table import LoadLike
 from limitsurf.motion.loads import gravity, with_gravity
 from limitsurf.motion.schedule import Schedule
-from limitsurf.motion.time_scales import TimeScales, check_lift, time_scales
+from limitsurf.motion.time_scales import TimeScales, time_scales
 from limitsurf.motion.tip_steps import TipSteps
 from limitsurf.motion.trajectory import Trajectory
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_positive
 from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
 __all__ = ["Drive", "Engine", "Method", "Mode", "Options", "engine_of"]
@@ -67,48 +67,46 @@ class Options:
         """Check those that need nothing else."""
         _choice("method", self.method, get_args(Method))
         _choice("mode", self.mode, get_args(Mode))
-        if self.frames < 1:
-            raise InputError("frames", "must be at least 1", value=self.frames)
+        as_count("frames", self.frames)
         for name in ("time_step", "tolerance"):
             if getattr(self, name) is not None:
-                _positive(name, getattr(self, name))
+                as_positive(name, getattr(self, name))
+        if self.tip is not None and self.tolerance is not None:
+            raise InputError("tolerance", "does not go with a tip", remedy="choose a time_step")
 
 
 def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) -> Engine:
     """Return what moves a part: a function of pose and twist that returns a trajectory."""
     chosen = Options(**options)
-    first = _first_activation(drive)
-    return _on_array(part, drive, first.array, duration, chosen)
+    if not isinstance(part, Part):
+        raise InputError("part", "is no Part", value=part)
+    limit = None if duration is None else as_positive("duration", duration)
+    return _on_array(part, drive, _first_activation(drive).array, limit, chosen)
 
 
 def _first_activation(drive: Any) -> Activation:
-    """Return what runs first; InputError unless it is an activation."""
-    first = drive.at(0.0) if isinstance(drive, Schedule) else drive
-    first = first(0.0) if callable(first) else first
-    if isinstance(first, Activation):
+    """Return what runs first; InputError unless it, and all of a schedule, are activations."""
+    if isinstance(drive, Schedule):
+        first, *_ = [as_activation(each) for _, each in drive.entries]
         return first
-    raise InputError(
-        "drive",
-        f"is or gives a {type(first).__name__}",
-        remedy="give an Activation, a Schedule of them, or a function of time that returns one",
-    )
+    return as_activation(drive(0.0) if callable(drive) else drive)
 
 
 def _on_array(
     part: Part, drive: Driven, array: ActuatorArray, duration: float | None, options: Options
 ) -> Engine:
-    check_lift(part, array)
     weight = gravity(part, options.tilt)
     drag = air_film_drag(part, array)
     if options.drag is not None:
         drag = _checked_drag(options.drag, options.mode)
     table = with_gravity(weight, options.load, duration)
     scales = time_scales(part, array, load=table.largest, drag=drag)
-    limit = scales.duration if duration is None else _positive("duration", duration)
+    limit = scales.duration if duration is None else duration
     mass = np.array([part.mass, part.mass, part.inertia])
     if options.mode == "quasi-static":
         mass = np.zeros(3)
-    body = Body(part.circumradius, part.edges, weight.normal, mass, drag, table.kernel)
+    edges = np.array(part.edges)  # a copy: kernels are compiled anew for read-only arrays
+    body = Body(part.circumradius, edges, weight.normal, mass, drag, table.kernel)
     dt = _longest_step(options, scales, limit)
     every, rest = max(limit / options.frames, dt), REST_SPEED * scales.speed
     stepper: ArraySteps | TipSteps
@@ -130,9 +128,9 @@ def _longest_step(options: Options, scales: TimeScales, limit: float) -> float:
 
 
 def _checked_drag(given: ArrayLike, mode: Mode) -> Array:
-    drag = as_array("drag", given, 3)
-    if not (np.isfinite(drag).all() and (drag >= 0.0).all()):
-        raise InputError("drag", "must be finite and at least 0", value=tuple(drag.tolist()))
+    drag = np.array(as_array("drag", given, 3))
+    if not (drag >= 0.0).all():
+        raise InputError("drag", "must be at least 0", value=tuple(drag.tolist()))
     if mode == "quasi-static" and not drag.all():
         raise InputError(
             "drag",
@@ -146,10 +144,3 @@ def _checked_drag(given: ArrayLike, mode: Mode) -> Array:
 def _choice(name: str, value: str, known: tuple[str, ...]) -> None:
     if value not in known:
         raise InputError(name, "is unknown", value=value, remedy=f"use {' or '.join(known)}")
-
-
-def _positive(name: str, value: float) -> float:
-    number = as_number(name, value)
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(name, "must be positive", value=value)
-    return float(number)
