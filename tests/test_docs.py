@@ -50,6 +50,18 @@ def test_readme_example_runs(capsys):
     assert names["result"].rate > 0.9
 
 
+def test_readme_example_of_motion_runs(capsys):
+    code = python_blocks(ROOT / "README.md")[2]
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    assert "a contact sticks" in capsys.readouterr().out
+    stop, mean, tips = names["stop"], names["mean"], names["tips"]
+    assert [e.kind.name for e in stop.events] == ["STICK", "REST"]
+    assert stop.events[0].time < stop.events[1].time
+    assert mean.outcome is tips.outcome is type(tips.outcome).REST
+    assert abs(mean.final_pose[2] - tips.final_pose[2]) < 0.1
+
+
 def test_readme_example_of_friction_runs(capsys):
     code = python_blocks(ROOT / "README.md")[1]
     names = {}

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from limitsurf.contacts.uniform_friction import UniformFriction as UniformFriction
     from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
+    from limitsurf.motion.drag import air_film_drag as air_film_drag
     from limitsurf.motion.field_motion import field_motion as field_motion
     from limitsurf.motion.pushing import Push as Push
     from limitsurf.motion.pushing import push as push
@@ -135,6 +136,7 @@ _HOME = {
     "Wheel": "contacts.wheel",
     "Zonotope": "sets.zonotope",
     "activate": "actuators.realised_field",
+    "air_film_drag": "motion.drag",
     "carry": "actuators.carrying",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",

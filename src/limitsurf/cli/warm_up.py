@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -47,6 +47,28 @@ def _contacts() -> None:
     ls.plan_alignment(part)
 
 
+def _motion() -> None:
+    """Move a part on feet and in a field, push and walk once."""
+    import limitsurf as ls
+
+    part = ls.Part([(0, 0), (1, 0), (1, 1), (0, 1)], 1.0)
+    corners = [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]]
+    feet = ls.ContactSet(corners, 0.5)
+    ovals = ls.ContactSet(corners, 0.5, ellipse=[[[1.0, 0.0], [0.0, 0.5]]] * 4)
+    start: dict[str, Any] = {"pose": (0, 0.1, 0.2), "duration": 0.1, "twist": (1.0, 0.5, 1.0)}
+    ways: list[dict[str, Any]] = [{}, {"method": "steps"}, {"mode": "quasi-static"}]
+    for contacts in (feet, ovals):
+        for way in ways:
+            ls.simulate(part, contacts, load=(1.5, 0.5, 0.2), drag=(1, 1, 1), **start, **way)
+    friction = ls.UniformFriction.under_weight(part, 0.1)
+    for way in ways[:2]:
+        field = ls.DensityField.squeeze(0.0, 1.0)
+        ls.simulate(part, field, friction=friction, **start, **way)
+    ls.push(feet, [1, 0], [0, 1])
+    ls.push_along(feet, [[0.5, 0.0], [0.5, 0.1]])
+    ls.walk(feet, 0.1, drag=(1, 1, 1))
+
+
 def _resonators() -> None:
     """Float a part on a resonator once."""
     from limitsurf.actuators.resonator_sweep import sweep_resonators
@@ -61,7 +83,8 @@ def _resonators() -> None:
 #: What is compiled side by side: groups that share few kernels.
 GROUPS: dict[str, Callable[[], None]] = {
     "convex sets": _sets,
-    "contacts and motion": _contacts,
+    "contacts and arrays": _contacts,
+    "motion": _motion,
     "resonators": _resonators,
 }
 

@@ -5,8 +5,8 @@ On a piece :math:`[t_0, t_1]`, with :math:`s = (2t - t_0 - t_1)/(t_1 - t_0)`, ea
 
 .. math:: b_k = c_k + 2 s b_{k+1} - b_{k+2}, \qquad F = c_0 + s b_1 - b_2
 
-(C. W. Clenshaw, *A note on the summation of Chebyshev series*, Math. Comp. 9, 1955). `boxes` holds
-the ranges of the Bernstein coefficients of a piece, between which the load stays.
+(C. W. Clenshaw, *A note on the summation of Chebyshev series*, Math. Comp. 9, 1955). The load on a
+piece also stays in the convex hull of its Bernstein coefficients.
 """
 
 from __future__ import annotations
@@ -23,21 +23,24 @@ NONE, CONSTANT, VARIES = 0, 1, 2
 
 
 class Load(NamedTuple):
-    """Ends (P + 1,) of the pieces, series (P, 3, K), Bernstein coefficients (P, 3, K), kind."""
+    """A row for each piece: begin, end, three series of K terms, three times K Bernstein's.
 
-    ends: Floats
-    series: Floats
-    bernstein: Floats
+    One array, for kernels count the references to each array that they are handed.
+    """
+
+    pieces: Floats
+    terms: int
     kind: int
 
 
 @compiled
-def piece_of(ends: Floats, t: float) -> int:
+def piece_of(load: Load, t: float) -> int:
     """Return the piece that a time lies in; the first or last one for times outside."""
-    low, high = 0, ends.shape[0] - 1
+    pieces = load.pieces
+    low, high = 0, pieces.shape[0]
     while high - low > 1:
         middle = (low + high) // 2
-        if t < ends[middle]:
+        if t < pieces[middle, 0]:
             high = middle
         else:
             low = middle
@@ -45,29 +48,27 @@ def piece_of(ends: Floats, t: float) -> int:
 
 
 @compiled
-def _clenshaw(c: Floats, s: float) -> tuple[float, float]:
-    """Return value and derivative of a Chebyshev series at s."""
+def _clenshaw(pieces: Floats, i: int, begin: int, n: int, s: float) -> tuple[float, float]:
+    """Return value and derivative at s of the series that begins in a column of row i."""
     b1 = b2 = d1 = d2 = 0.0
-    for k in range(c.shape[0] - 1, 0, -1):
+    for k in range(begin + n - 1, begin, -1):
         d1, d2 = 2.0 * (b1 + s * d1) - d2, d1
-        b1, b2 = c[k] + 2.0 * s * b1 - b2, b1
-    return c[0] + s * b1 - b2, b1 + s * d1 - d2
+        b1, b2 = pieces[i, k] + 2.0 * s * b1 - b2, b1
+    return pieces[i, begin] + s * b1 - b2, b1 + s * d1 - d2
 
 
 @compiled
 def load_at(load: Load, t: float) -> tuple[Vector, Vector]:
     """Return the load at a time, and its rate."""
-    if load.kind == NONE:
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    c = load.series
-    if load.kind == CONSTANT:
-        return (c[0, 0, 0], c[0, 1, 0], c[0, 2, 0]), (0.0, 0.0, 0.0)
-    i = piece_of(load.ends, t)
-    half = 0.5 * (load.ends[i + 1] - load.ends[i])
-    s = (t - load.ends[i]) / half - 1.0
-    fx, dx = _clenshaw(c[i, 0], s)
-    fy, dy = _clenshaw(c[i, 1], s)
-    m, dm = _clenshaw(c[i, 2], s)
+    p = load.pieces
+    if load.kind != VARIES:
+        return (p[0, 2], p[0, 3], p[0, 4]), (0.0, 0.0, 0.0)
+    i, n = piece_of(load, t), load.terms
+    half = 0.5 * (p[i, 1] - p[i, 0])
+    s = (t - p[i, 0]) / half - 1.0
+    fx, dx = _clenshaw(p, i, 2, n, s)
+    fy, dy = _clenshaw(p, i, 2 + n, n, s)
+    m, dm = _clenshaw(p, i, 2 + 2 * n, n, s)
     return (fx, fy, m), (dx / half, dy / half, dm / half)
 
 

@@ -195,7 +195,8 @@ def as_activation(drive: Any) -> Activation:
     raise InputError(
         "drive",
         f"is or gives a {type(drive).__name__}",
-        remedy="give an Activation, a Schedule of them, or a function of time that returns one",
+        remedy="give an Activation or a function of time that returns one, a DensityField, a "
+        "ContactSet, or a Schedule of these",
     )
 
 

@@ -1,104 +1,103 @@
-"""Which engine moves a part: checks what `simulate` is given, and chooses."""
+"""Which engine moves a part, by what drives it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from limitsurf.actuators.activation import Activation
-from limitsurf.actuators.actuator_array import ActuatorArray
-from limitsurf.contacts.oscillating_contact import OscillatingContact
+from limitsurf.actuators.density_field import DensityField
+from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.driven import Driven, DrivenMotion, Watch, as_activation
-from limitsurf.motion.load_table import LoadLike
+from limitsurf.motion.feet import feet_motion
+from limitsurf.motion.field_motion import field_motion
+from limitsurf.motion.in_turn import Move, in_turn
+from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.motion.loads import gravity, with_gravity
+from limitsurf.motion.options import Options, checked_drag
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.time_scales import TimeScales, time_scales
 from limitsurf.motion.tip_steps import TipSteps
 from limitsurf.motion.trajectory import Trajectory
-from limitsurf.sets.arguments import as_array, as_count, as_positive
+from limitsurf.sets.arguments import as_positive
 from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
-__all__ = ["Drive", "Engine", "Method", "Mode", "Options", "engine_of"]
+__all__ = ["Drive", "Engine", "engine_of"]
 
 Array = NDArray[np.float64]
-Mode = Literal["inertial", "quasi-static"]
-Method = Literal["steps", "events"]
-Drive = Driven
+Drive = Driven | ContactSet | DensityField | Schedule[ContactSet] | Schedule[DensityField]
+
+_MAX_STEPS = 10_000_000
+_USUALLY = 6.0  # the default time limit is that much longer than a squeeze of paper takes
+_LONG = 20.0  # longest adaptive step, in default steps
 
 
 class Engine(Protocol):
     """What moves a part, for at most `duration` [s]."""
 
     @property
-    def duration(self) -> float:
-        """Time limit [s]."""
+    def duration(self) -> float | None:
+        """Time limit [s], if it is known before."""
 
     def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
         """Return the motion from a pose and a twist."""
 
 
-_MAX_STEPS = 10_000_000
-_LONG = 20.0  # longest adaptive step, in default steps
+@dataclass(frozen=True, eq=False)
+class InTurn:
+    """An `Engine` for one drive, or a schedule of drives that each are moved on at once."""
 
+    drive: Any
+    duration: float | None
+    move: Move[Any]
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Options:
-    """Options of `simulate`, which explains them."""
-
-    method: Method = "steps"
-    mode: Mode = "inertial"
-    load: LoadLike = None
-    tilt: ArrayLike = (0.0, 0.0)
-    drag: ArrayLike | None = None
-    tip: OscillatingContact | None = None
-    time_step: float | None = None
-    tolerance: float | None = None
-    frames: int = 200
-
-    def __post_init__(self) -> None:
-        """Check those that need nothing else."""
-        _choice("method", self.method, get_args(Method))
-        _choice("mode", self.mode, get_args(Mode))
-        as_count("frames", self.frames)
-        for name in ("time_step", "tolerance"):
-            if getattr(self, name) is not None:
-                as_positive(name, getattr(self, name))
-        if self.tip is not None and self.tolerance is not None:
-            raise InputError("tolerance", "does not go with a tip", remedy="choose a time_step")
+    def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
+        """Return the motion from a pose and a twist; it is watched only at its end."""
+        if isinstance(self.drive, Schedule):
+            assert self.duration is not None
+            trajectory = in_turn(self.drive.pieces(self.duration), self.move, pose, twist)
+        else:
+            trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
+        if watch is not None:
+            watch(trajectory.duration, None)
+        return trajectory
 
 
 def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) -> Engine:
-    """Return what moves a part: a function of pose and twist that returns a trajectory."""
+    """Return what moves a part."""
     chosen = Options(**options)
     if not isinstance(part, Part):
         raise InputError("part", "is no Part", value=part)
     limit = None if duration is None else as_positive("duration", duration)
-    return _on_array(part, drive, _first_activation(drive).array, limit, chosen)
-
-
-def _first_activation(drive: Any) -> Activation:
-    """Return what runs first; InputError unless it, and all of a schedule, are activations."""
-    if isinstance(drive, Schedule):
-        first, *_ = [as_activation(each) for _, each in drive.entries]
-        return first
-    return as_activation(drive(0.0) if callable(drive) else drive)
+    first: Any = drive.entries[0][1] if isinstance(drive, Schedule) else drive
+    if isinstance(first, ContactSet):
+        return _on_feet(part, drive, limit, chosen)
+    if isinstance(first, DensityField):
+        return _in_field(part, drive, limit, chosen)
+    chosen.refuse("arrays", "friction")
+    asked = callable(first) and not isinstance(drive, Schedule)
+    first = as_activation(first(0.0) if asked else first)
+    for _, each in drive.entries if isinstance(drive, Schedule) else ():
+        as_activation(each)
+    return _on_array(part, drive, first, limit, chosen)  # type: ignore[arg-type]
 
 
 def _on_array(
-    part: Part, drive: Driven, array: ActuatorArray, duration: float | None, options: Options
+    part: Part, drive: Driven, first: Activation, duration: float | None, options: Options
 ) -> Engine:
+    array = first.array
     weight = gravity(part, options.tilt)
     drag = air_film_drag(part, array)
     if options.drag is not None:
-        drag = _checked_drag(options.drag, options.mode)
+        drag = checked_drag(options.drag, options.mode)
     table = with_gravity(weight, options.load, duration)
     scales = time_scales(part, array, load=table.largest, drag=drag)
     limit = scales.duration if duration is None else duration
@@ -108,9 +107,11 @@ def _on_array(
     edges = np.array(part.edges)  # a copy: kernels are compiled anew for read-only arrays
     body = Body(part.circumradius, edges, weight.normal, mass, drag, table.kernel)
     dt = _longest_step(options, scales, limit)
-    every, rest = max(limit / options.frames, dt), REST_SPEED * scales.speed
+    usual = limit if duration is not None else limit / _USUALLY
+    every, rest = max(usual / options.frames, dt), REST_SPEED * scales.speed
     stepper: ArraySteps | TipSteps
     if options.tip is not None:
+        options.refuse("steps with a tip", "tolerance")
         stepper = TipSteps(part, body, table, options.tip, dt, every, rest)
     else:
         stepper = ArraySteps(body, Pace(dt, options.tolerance or 0.0, CONTACT_STEP, rest), every)
@@ -127,20 +128,66 @@ def _longest_step(options: Options, scales: TimeScales, limit: float) -> float:
     return dt
 
 
-def _checked_drag(given: ArrayLike, mode: Mode) -> Array:
-    drag = np.array(as_array("drag", given, 3))
-    if not (drag >= 0.0).all():
-        raise InputError("drag", "must be at least 0", value=tuple(drag.tolist()))
-    if mode == "quasi-static" and not drag.all():
-        raise InputError(
-            "drag",
-            "must be positive in quasi-static mode, where it alone limits the speed",
-            value=tuple(drag.tolist()),
-            remedy="use mode='inertial' or give all three",
+def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options) -> Engine:
+    options.refuse("feet", "tip", "friction")
+    if duration is None:
+        raise InputError("duration", "is missing", remedy="give it for parts on feet")
+    table = with_gravity(gravity(part, options.tilt), options.load, duration)
+    given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
+
+    def move(feet: ContactSet, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+        return feet_motion(
+            part,
+            feet,
+            q,
+            time,
+            twist=v,
+            load=_from(table, begin),
+            drag=options.drag,
+            mode=options.mode,
+            time_step=options.time_step,
+            tolerance=options.tolerance,
+            frames=options.frames,
+            **given,
         )
-    return drag
+
+    return InTurn(drive, duration, move)
 
 
-def _choice(name: str, value: str, known: tuple[str, ...]) -> None:
-    if value not in known:
-        raise InputError(name, "is unknown", value=value, remedy=f"use {' or '.join(known)}")
+def _in_field(part: Part, drive: Drive, duration: float | None, options: Options) -> Engine:
+    options.refuse("force fields", "tip")
+    if duration is None and isinstance(drive, Schedule):
+        raise InputError("duration", "is missing", remedy="give it for schedules")
+    load: LoadLike = options.load
+    if np.any(options.tilt):
+        load = with_gravity(gravity(part, options.tilt), options.load, duration)
+    given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
+    if options.tolerance is not None:
+        given["tolerance"] = options.tolerance
+
+    def move(field: DensityField, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+        return field_motion(
+            part,
+            field,
+            q,
+            time,
+            twist=v,
+            mode=options.mode,
+            drag=options.drag,
+            friction=options.friction,
+            load=_from(load, begin),
+            time_step=options.time_step,
+            frames=options.frames,
+            **given,
+        )
+
+    return InTurn(drive, duration, move)
+
+
+def _from(load: LoadLike, begin: float) -> LoadLike:
+    """Return a load as a function of the time since `begin`."""
+    if isinstance(load, LoadTable) and load.steady:
+        return load(0.0)
+    if begin == 0.0 or not callable(load):
+        return load
+    return lambda t: load(begin + t)

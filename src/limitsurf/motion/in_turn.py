@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Drive = TypeVar("Drive")
 
 #: Moves a part on a drive from pose and twist at a time for a duration.
-Move = Callable[[Drive, Array, Array, float, float], Trajectory]
+Move = Callable[[Drive, Array, Array, float, Any], Trajectory]
 
 
 def in_turn(

@@ -20,8 +20,9 @@ Array = NDArray[np.float64]
 
 _TERMS = 12
 _TOLERANCE = 1e-10  # of the largest load, at points between the nodes
-_DEPTH = 40  # halvings: pieces down to 1e-12 of the duration, for loads with kinks
+_SHORTEST = 2.0**-40  # of the duration: loads with kinks need short pieces there
 _PIECES = 20_000
+_TINY = float(np.finfo(np.float64).tiny)
 
 
 class LoadTable:
@@ -56,8 +57,8 @@ class LoadTable:
         else:
             value = np.zeros(3) if load is None else as_array("load", load, 3)
             kind = CONSTANT if value.any() else NONE
-            series = value.reshape(1, 3, 1).copy()
-            self.kernel = Load(np.array([0.0, self.duration]), series, series, kind)
+            row = np.concatenate([[0.0, self.duration], value, value])
+            self.kernel = Load(row[None], 1, kind)
 
     @classmethod
     def of(cls, load: LoadLike, duration: float) -> LoadTable:
@@ -80,7 +81,14 @@ class LoadTable:
     @property
     def largest(self) -> Array:
         """Largest magnitude of each component (3,) [N, N, N m], or a little more."""
-        return np.abs(self.kernel.bernstein).max(axis=(0, 2))
+        terms = self.kernel.terms
+        control = self.kernel.pieces[:, 2 + 3 * terms :].reshape(-1, 3, terms)
+        return np.asarray(np.abs(control).max(axis=(0, 2)))
+
+    @property
+    def shortest(self) -> float:
+        """Length of the shortest piece [s]."""
+        return float((self.kernel.pieces[:, 1] - self.kernel.pieces[:, 0]).min())
 
     def __call__(self, time: float) -> Array:
         """Return the load (3,) at a time [s]."""
@@ -88,7 +96,7 @@ class LoadTable:
 
     def __repr__(self) -> str:
         """Return kind, pieces and duration."""
-        what = "no load", "constant", f"{len(self.kernel.series)} pieces"
+        what = "no load", "constant", f"{len(self.kernel.pieces)} pieces"
         return f"LoadTable({what[self.kernel.kind]}, {self.duration:g} s)"
 
 
@@ -98,50 +106,64 @@ LoadLike = ArrayLike | Callable[[float], ArrayLike] | LoadTable | None
 @cache
 def _rules() -> tuple[Array, Array, Array, Array, Array]:
     """Return nodes, values to series, points between, their matrix, series to Bernstein."""
-    nodes = chebyshev.chebpts1(_TERMS)
+    nodes = np.asarray(chebyshev.chebpts1(_TERMS), dtype=np.float64)
     between = np.array([-0.97, -0.35, 0.4, 0.95])
-    fit = np.linalg.inv(chebyshev.chebvander(nodes, _TERMS - 1))
+    fit = np.asarray(np.linalg.inv(chebyshev.chebvander(nodes, _TERMS - 1)))
     p = _TERMS - 1
     k, x = np.arange(_TERMS), 0.5 * (1.0 + nodes)[:, None]
     bernstein = np.linalg.inv(comb(p, k) * x**k * (1.0 - x) ** (p - k))
     vander = chebyshev.chebvander(nodes, p)
-    return nodes, fit, between, chebyshev.chebvander(between, p), bernstein @ vander
+    check = np.asarray(chebyshev.chebvander(between, p), dtype=np.float64)
+    return nodes, fit, between, check, np.asarray(bernstein @ vander)
 
 
 def _tabulated(load: Callable[[float], ArrayLike], duration: float) -> Load:
+    """Return the table, of pieces that are cut, a level at a time, until they are good."""
     nodes, fit, between, check, bernstein = _rules()
-    todo, begins, series, largest = [(0.0, duration, 0)], [], [], np.zeros(3)
-    while todo:
-        begin, end, depth = todo.pop()
-        at = begin + 0.5 * (end - begin) * (1.0 + np.concatenate([nodes, between]))
-        values = _sampled(load, at)
-        largest = np.maximum(largest, np.abs(values).max(axis=0))
+    at = 0.5 * (1.0 + np.concatenate([nodes, between]))
+    begin, width, largest = np.zeros(1), np.array([duration]), np.zeros(3)
+    rows: list[Array] = []
+    while len(begin):
+        values = _sampled(load, begin[:, None] + width[:, None] * at)
+        largest = np.maximum(largest, np.abs(values).max(axis=(0, 1)))
         largest[:2] = largest[:2].max()
-        c = fit @ values[:_TERMS]
-        wrong = np.abs(check @ c - values[_TERMS:]).max(axis=0)
-        if (wrong <= _TOLERANCE * np.maximum(largest, np.finfo(float).tiny)).all():
-            begins.append(begin)
-            series.append(c.T)
-        elif depth == _DEPTH or len(begins) + len(todo) > _PIECES:
-            raise InputError(
-                "load",
-                f"is not smooth near t = {begin:.6g} s",
-                remedy="split the motion where the load jumps",
-            )
-        else:
-            middle = 0.5 * (begin + end)
-            todo += [(middle, end, depth + 1), (begin, middle, depth + 1)]
-    table = np.ascontiguousarray(series)
-    control = np.ascontiguousarray(table @ bernstein.T)
-    return Load(np.array([*begins, duration]), table, control, VARIES)
+        c = fit @ values[:, :_TERMS]
+        wrong = np.abs(check @ c - values[:, _TERMS:]).max(axis=1)
+        excess = (wrong / np.maximum(_TOLERANCE * largest, _TINY)).max(axis=1)
+        good = excess <= 1.0
+        series = [
+            x.transpose(0, 2, 1).reshape(len(x), 3 * _TERMS) for x in (c[good], bernstein @ c[good])
+        ]
+        rows.append(np.column_stack([begin[good], (begin + width)[good], *series]))
+        begin, width = _cut(begin[~good], width[~good], excess[~good], duration)
+    table = np.concatenate(rows)
+    return Load(table[np.argsort(table[:, 0])], _TERMS, VARIES)
+
+
+def _cut(begin: Array, width: Array, excess: Array, duration: float) -> tuple[Array, Array]:
+    """Cut pieces into as many as are needed at least: halves are better by ``2^terms`` at most."""
+    if not len(begin):
+        return begin, width
+    bad = begin[width < duration * _SHORTEST]
+    if len(bad) or len(begin) > _PIECES:
+        raise InputError(
+            "load",
+            f"is not smooth near t = {(bad if len(bad) else begin)[0]:.6g} s",
+            remedy="split the motion where the load jumps",
+        )
+    halvings = np.round(np.log2(excess) / _TERMS).astype(np.int64)
+    parts = 2 ** np.clip(halvings, 1, 3)
+    share = np.concatenate([np.arange(k) for k in parts])
+    width = np.repeat(width / parts, parts)
+    return np.repeat(begin, parts) + share * width, width
 
 
 def _sampled(load: Callable[[float], ArrayLike], times: Array) -> Array:
-    """Return the loads (n, 3) at times; InputError if they are not three finite numbers."""
+    """Return the loads (n, k, 3) at times (n, k); InputError if they are not finite numbers."""
     try:
-        values = np.array([load(t) for t in times.tolist()], dtype=np.float64)
+        values = np.array([load(t) for t in times.ravel().tolist()], dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError("load", "does not return three numbers") from error
-    if values.shape != (len(times), 3) or not np.isfinite(values).all():
+    if values.shape != (times.size, 3) or not np.isfinite(values).all():
         raise InputError("load", "does not return three finite numbers", value=values[0].tolist())
-    return values
+    return values.reshape(*times.shape, 3)

@@ -1,4 +1,4 @@
-"""Simulate a part on an activated array."""
+"""Simulate a part on an array, on feet, or in a force field."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from numpy.typing import ArrayLike
 from rich.progress import Progress
 
 from limitsurf.contacts.oscillating_contact import OscillatingContact
+from limitsurf.contacts.uniform_friction import UniformFriction
 from limitsurf.geometry.part import Part
-from limitsurf.motion.engines import Drive, Method, Mode, engine_of
+from limitsurf.motion.engines import Drive, engine_of
 from limitsurf.motion.load_table import LoadLike
 from limitsurf.motion.netcdf import as_target
+from limitsurf.motion.options import Method, Mode
 from limitsurf.motion.trajectory import Trajectory
 from limitsurf.sets.arguments import as_array
 
@@ -25,12 +27,13 @@ def simulate(
     duration: float | None = None,
     *,
     twist: ArrayLike = (0.0, 0.0, 0.0),
-    method: Method = "steps",
+    method: Method | None = None,
     mode: Mode = "inertial",
     load: LoadLike = None,
     tilt: ArrayLike = (0.0, 0.0),
     drag: ArrayLike | None = None,
     tip: OscillatingContact | None = None,
+    friction: UniformFriction | None = None,
     time_step: float | None = None,
     tolerance: float | None = None,
     frames: int = 200,
@@ -39,24 +42,27 @@ def simulate(
 ) -> Trajectory:
     """Simulate a part until it rests, leaves the array, or the time is up.
 
-    Each step finds the tips under the part, shares its weight equally among them, and solves for
-    the closest point of their limit surface, with a certified error.
+    On an array each step finds the tips under the part, shares its weight equally among them, and
+    solves for the closest point of their limit surface, with a certified error. Feet fixed to the
+    part, and force fields without an array, move it likewise.
 
     Parameters
     ----------
     part : Part
         The part, with areal density.
-    drive : Activation, Schedule of activations, or callable
+    drive : Activation, ContactSet, DensityField, a Schedule of these, or callable
         Which actuators run; a function of time [s] that returns an activation is asked in
-        every step.
+        every step. A `ContactSet` is what the part stands on, fixed to it: see `feet_motion`. A
+        `DensityField` is a continuum of force: see `field_motion`.
     pose : (3,) float
         Start ``(x, y, theta)`` of the centre of mass, array frame [m, m, rad].
     duration : float, optional
-        Time limit [s]; `time_scales` gives the default.
+        Time limit [s]; `time_scales` gives the default. Feet, and loads that change, need it.
     twist : (3,) float
         Start velocity [m/s, m/s, rad/s]; ignored in quasi-static mode.
-    method : {"steps", "events"}
-        Implicit steps; or motion from event to event.
+    method : {"steps", "events"}, optional
+        Implicit steps, the default on arrays; or smooth motion from event to event, the default for
+        feet and fields.
     mode : {"inertial", "quasi-static"}
         With the part's mass, or drag alone. Paper is nearly quasi-static, cards are not.
     load : (3,) float, or callable of time that returns one
@@ -64,17 +70,21 @@ def simulate(
     tilt : (2,) float
         Direction in which the array falls, times the angle [rad].
     drag : (3,) float, optional
-        Viscous drag for x, y and theta [N s/m, N s/m, N m s]; by default that of the air film.
+        Viscous drag for x, y and theta [N s/m, N s/m, N m s]; by default that of the array's air
+        film, and none without an array.
     tip : OscillatingContact, optional
         The motion of a tip, such as `ResonatorPixel.tip`. Then the tips have their full mean
         friction, which falls with the speed of the part, instead of what they exert at rest: a
         hundred times slower, and not with a tolerance.
+    friction : UniformFriction, optional
+        Friction of the ground under the part in a force field.
     time_step : float, optional
         Step [s], the longest one with a tolerance; by default the part moves at most a tip width
         in one, at the speed that it reaches from rest.
     tolerance : float, optional
-        Local error of a step over the part's circumradius: steps adapt to it. About 1e-4 is five
-        times faster than the default.
+        Local error of a step over the part's circumradius: steps adapt to it. On arrays about 1e-4
+        is five times faster than the default, fixed steps. What it is for feet and fields, see
+        there.
     frames : int
         About how many frames to record.
     progress : bool
@@ -92,7 +102,7 @@ def simulate(
         The active tips cannot carry the part; names the voltage that would lift it.
     InputError
         Arguments that are not finite or not positive; a start off the array; no drag in
-        quasi-static mode; a drive of another kind or shape; a file that cannot be written.
+        quasi-static mode; a drive of another kind or shape.
 
     Examples
     --------
@@ -114,6 +124,7 @@ def simulate(
         tilt=tilt,
         drag=drag,
         tip=tip,
+        friction=friction,
         time_step=time_step,
         tolerance=tolerance,
         frames=frames,

@@ -15,7 +15,7 @@ from limitsurf.actuators.activation import Activation, Method, squeeze_activatio
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.motion.engines import Mode
+from limitsurf.motion.options import Mode
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.starts import check_room, random_starts
 from limitsurf.motion.time_scales import check_lift

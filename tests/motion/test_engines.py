@@ -1,0 +1,124 @@
+"""What `simulate` does with each kind of drive, and schedules of feet and fields."""
+
+import numpy as np
+import pytest
+
+from limitsurf.actuators.activation import squeeze_activation
+from limitsurf.actuators.density_field import DensityField
+from limitsurf.contacts.contact_set import ContactSet
+from limitsurf.contacts.oscillating_contact import OscillatingContact
+from limitsurf.contacts.uniform_friction import UniformFriction
+from limitsurf.errors import InputError
+from limitsurf.geometry.part import Part
+from limitsurf.motion.feet import feet_motion
+from limitsurf.motion.field_motion import field_motion
+from limitsurf.motion.schedule import Schedule
+from limitsurf.motion.simulate import simulate
+from limitsurf.motion.simulate_many import simulate_many
+from limitsurf.motion.trajectory import EventKind, Outcome
+
+
+@pytest.fixture(scope="module")
+def block():
+    return Part([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)], 100.0)
+
+
+@pytest.fixture(scope="module")
+def feet():
+    return ContactSet(0.05 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]), 0.25)
+
+
+def test_feet_and_fields_go_to_their_engines(block, feet):
+    start, twist = (0.1, 0.2, 0.3), (0.3, 0.1, 4.0)
+    one = simulate(block, feet, start, 1.0, twist=twist)
+    other = feet_motion(block, feet, start, 1.0, twist=twist)
+    assert np.array_equal(one.poses, other.poses)
+    field, drag = DensityField.squeeze(0.3, 5.0), (0.5, 0.5, 1e-3)
+    one = simulate(block, field, start, drag=drag, mode="quasi-static")
+    other = field_motion(block, field, start, drag=drag, mode="quasi-static")
+    assert np.array_equal(one.poses, other.poses)
+    assert one.outcome is Outcome.REST
+
+
+def test_tilt_pulls_at_feet_and_in_fields(block, feet):
+    from scipy.constants import g
+
+    hold = 0.25 * 4 / (block.mass * g)
+    held = simulate(block, feet, duration=10.0, tilt=(0.0, np.arcsin(hold * (1 - 1e-6))))
+    assert held.outcome is Outcome.REST
+    assert np.array_equal(held.final_pose, np.zeros(3))
+    slides = simulate(block, feet, duration=1.0, tilt=(0.0, np.arcsin(2 * hold)))
+    fall = 0.5 * 1.0 / block.mass  # half of the net force over the mass
+    assert slides.final_pose[1] == pytest.approx(fall, rel=1e-6)
+    friction = UniformFriction.under_weight(block, 0.3)
+    still = DensityField.uniform(0.0, 0.0)
+    rest = simulate(block, still, friction=friction, tilt=(0.29, 0.0), duration=1.0)
+    assert rest.outcome is Outcome.REST
+
+
+def test_a_cart_takes_turns(block):
+    """Two sets of feet in turn: the joined record is that of the two motions."""
+    corners = 0.05 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    push = np.array([[1.0, 0.0]] * 4)
+    forward, still = ContactSet(corners, 0.1, push), ContactSet(corners, 0.25)
+    plan = Schedule([(0.0, forward), (0.2, still)])
+    path = simulate(block, plan, duration=5.0, method="events")
+    first = simulate(block, forward, duration=0.2)
+    second = simulate(block, still, first.final_pose, 4.8, twist=first.twists[-1])
+    assert path.final_pose == pytest.approx(second.final_pose, abs=1e-12)
+    assert path.duration == pytest.approx(0.2 + second.duration)
+    assert np.all(np.diff(path.times) >= 0.0)
+    assert [e.kind for e in path.events if e.kind is EventKind.SWITCH] == [EventKind.SWITCH]
+    size = path.energy.work.max()
+    assert size == pytest.approx(first.energy.work[-1])
+    assert np.abs(path.energy.residual).max() < 1e-6 * size
+
+
+def test_fields_in_turn_wait_at_rest(block):
+    squeeze = [DensityField.squeeze(a, 5.0) for a in (0.0, 0.5 * np.pi)]
+    plan = Schedule([(0.0, squeeze[0]), (50.0, squeeze[1])])
+    path = simulate(
+        block,
+        plan,
+        (0.01, 0.02, 0.5),
+        100.0,
+        drag=(0.5, 0.5, 1e-3),
+        mode="quasi-static",
+    )
+    assert path.final_pose[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
+    kinds = [e.kind for e in path.events]
+    assert kinds.count(EventKind.SWITCH) == 1
+    assert kinds[-1] is EventKind.REST
+
+
+def test_many_starts_of_any_drive(block, feet):
+    starts = np.array([[0, 0, 0], [0, 0, 1.0]])
+    runs = simulate_many(block, DensityField.squeeze(0.0, 5.0), starts, drag=(1, 1, 1e-3))
+    assert len(runs) == 2
+    assert runs.count(Outcome.REST) == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"duration": None}, "duration"),
+        ({"tip": OscillatingContact(0.5, [1.0, 0.0], [1.0, -1.0], 1.0)}, "tip"),
+        ({"time_step": 1e-3, "method": "events"}, "time_step"),
+        ({"duration": -1.0}, "duration"),
+        ({"mode": "quasi-static"}, "drag"),
+    ],
+)
+def test_options_that_do_not_fit_feet_are_named(block, feet, change, name):
+    with pytest.raises(InputError) as caught:
+        simulate(block, feet, **({"duration": 1.0} | change))
+    assert caught.value.argument == name
+
+
+def test_options_that_do_not_fit_arrays_and_fields_are_named(array64, paper_t, block):
+    friction = UniformFriction.under_weight(block, 0.3)
+    with pytest.raises(InputError, match="friction: is not for arrays"):
+        simulate(paper_t, squeeze_activation(array64, 0.0), friction=friction)
+    with pytest.raises(InputError, match="duration: is missing"):
+        simulate(block, Schedule([(0.0, DensityField.squeeze(0.0, 1.0))]))
+    with pytest.raises(InputError, match="drag: "):
+        simulate(block, DensityField.squeeze(0.0, 1.0), mode="quasi-static")
