@@ -60,12 +60,11 @@ class InTurn:
     move: Move[Any]
 
     def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
-        """Return the motion from a pose and a twist; it is watched only at its end."""
+        """Return the motion from a pose and a twist; it is watched when a drive is done."""
         if isinstance(self.drive, Schedule):
             assert self.duration is not None
-            trajectory = in_turn(self.drive.pieces(self.duration), self.move, pose, twist)
-        else:
-            trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
+            return in_turn(self.drive.pieces(self.duration), self.move, pose, twist, watch)
+        trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
         if watch is not None:
             watch(trajectory.duration, None)
         return trajectory
@@ -77,17 +76,26 @@ def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) 
     if not isinstance(part, Part):
         raise InputError("part", "is no Part", value=part)
     limit = None if duration is None else as_positive("duration", duration)
-    first: Any = drive.entries[0][1] if isinstance(drive, Schedule) else drive
+    first = _first(drive)
     if isinstance(first, ContactSet):
         return _on_feet(part, drive, limit, chosen)
     if isinstance(first, DensityField):
         return _in_field(part, drive, limit, chosen)
     chosen.refuse("arrays", "friction")
-    asked = callable(first) and not isinstance(drive, Schedule)
-    first = as_activation(first(0.0) if asked else first)
-    for _, each in drive.entries if isinstance(drive, Schedule) else ():
-        as_activation(each)
-    return _on_array(part, drive, first, limit, chosen)  # type: ignore[arg-type]
+    asked = drive(0.0) if callable(drive) else first
+    return _on_array(part, drive, as_activation(asked), limit, chosen)  # type: ignore[arg-type]
+
+
+def _first(drive: Drive) -> Any:
+    """Return what drives first; InputError for a schedule of different kinds."""
+    if not isinstance(drive, Schedule):
+        return drive
+    first: Any = drive.entries[0][1]
+    for _, each in drive.entries:
+        if type(each) is not type(first):
+            what = f"has a {type(first).__name__} and a {type(each).__name__}"
+            raise InputError("drive", what, remedy="schedule drives of one kind")
+    return first
 
 
 def _on_array(
@@ -147,7 +155,7 @@ def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options)
             mode=options.mode,
             time_step=options.time_step,
             tolerance=options.tolerance,
-            frames=options.frames,
+            frames=_share(options.frames, time, duration),
             **given,
         )
 
@@ -159,6 +167,8 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
     if duration is None and isinstance(drive, Schedule):
         raise InputError("duration", "is missing", remedy="give it for schedules")
     load: LoadLike = options.load
+    if isinstance(load, LoadTable) and duration is not None:
+        load = LoadTable.of(load, duration)
     if np.any(options.tilt):
         load = with_gravity(gravity(part, options.tilt), options.load, duration)
     given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
@@ -177,11 +187,18 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
             friction=options.friction,
             load=_from(load, begin),
             time_step=options.time_step,
-            frames=options.frames,
+            frames=_share(options.frames, time, duration),
             **given,
         )
 
     return InTurn(drive, duration, move)
+
+
+def _share(frames: int, time: float | None, duration: float | None) -> int:
+    """Return the frames of a piece of a schedule."""
+    if time is None or duration is None:
+        return frames
+    return max(round(frames * time / duration), 1)
 
 
 def _from(load: LoadLike, begin: float) -> LoadLike:
