@@ -10,6 +10,7 @@ from scipy.constants import g
 from limitsurf.actuators.activation import Activation, squeeze_activation
 from limitsurf.actuators.actuator_array import load_array
 from limitsurf.actuators.carrying import carry
+from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.slide import slide
@@ -200,6 +201,7 @@ def test_no_drag_is_for_inertial_motion_only(array64, square):
         ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "tilt": (0.01, 0.0)}, "duration"),
         ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "duration": 0.2}, "load"),
         ({"duration": [1.0, 2.0]}, "duration"),
+        ({"tip": "resonator"}, "tip"),
     ],
 )
 def test_bad_arguments_are_named(array64, paper_t, arguments, name):
@@ -323,3 +325,16 @@ def test_layouts_of_arrays_do_not_compile_anew(array64, paper_t):
     for active in (wide[:, ::2], np.asfortranarray(drive.active), read_only):
         simulate(paper_t, Activation(array64, active), duration=0.01, drag=[1e-6, 1e-6, 1e-12])
     assert len(slide.signatures) == compiled
+
+
+def test_dead_tips_carry_nothing(array64, paper_t):
+    array, start = array64.with_spread(strength=0.2, dead=0.1, seed=1), (1e-4, 2e-4, 0.5)
+    array = with_pixel(array, tip_width=0.0)
+    everything = Activation(array, np.ones_like(array.alive))
+    path = simulate(paper_t, everything, start, 0.01, mode="quasi-static", frames=1)
+    assert path.tips[0] == carry(everything, paper_t, start).active
+    alive = simulate(paper_t, Activation(array, array.alive), start, 0.01, mode="quasi-static")
+    assert np.array_equal(path.final_pose, alive.final_pose)
+    tip = OscillatingContact(0.3, [1.0, 0.0], [1.0, 1.0, -2.0], 1.0)
+    slow = simulate(paper_t, everything, start, 0.01, time_step=5e-3, frames=1, tip=tip)
+    assert slow.tips[0] == path.tips[0]

@@ -65,7 +65,7 @@ def ground_of(activation: Activation) -> Ground:
         lattice=Lattice(
             *array.first_site,
             array.site_pitch,
-            writable(activation.active),
+            writable(activation.running),
             _directions(array),
             pixel.tip_width,
         ),

@@ -78,6 +78,8 @@ class TipSteps:
 
     def __post_init__(self) -> None:
         """Check the tip."""
+        if not isinstance(self.tip, OscillatingContact):
+            raise InputError("tip", "is no OscillatingContact", value=self.tip)
         if self.tip.shape != ():
             raise InputError("tip", f"has shape {self.tip.shape}", remedy="give one tip")
 
@@ -134,7 +136,7 @@ class TipSteps:
     ) -> TipDissipation | None:
         """Return the tips that carry the part, None if they cannot."""
         sites.move(motion[POSE : POSE + 3])
-        running = activation.active[tuple(sites.sites.T)]
+        running = activation.running[tuple(sites.sites.T)]
         position = sites.positions[running]
         ground = ground_of(activation)
         normal = self.body.weight / len(position) if len(position) else np.inf
