@@ -145,7 +145,7 @@ def new_motion(pose: Floats, twist: Floats) -> Floats:
     return motion
 
 
-@inlined
+@compiled
 def _place(edges: Floats, motion: Floats, out: Floats) -> None:
     """Move the edges to the pose."""
     x, y, theta = motion[POSE], motion[POSE + 1], motion[POSE + 2]
@@ -156,14 +156,14 @@ def _place(edges: Floats, motion: Floats, out: Floats) -> None:
             out[i, k + 1] = y + sin * edges[i, k] + cos * edges[i, k + 1]
 
 
-@inlined
+@compiled
 def is_over(body: Body, ground: Ground, motion: Floats, work: Work) -> bool:
     """Place the edges; return whether all of the part is over the array."""
     _place(body.edges, motion, work.edges)
     return holds(ground.lattice, work.edges)
 
 
-@inlined
+@compiled
 def find_tips(
     body: Body, ground: Ground, motion: Floats, spans: Spans, work: Work
 ) -> tuple[int, Spans]:
@@ -177,7 +177,7 @@ def find_tips(
     return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, spans
 
 
-@inlined
+@compiled
 def _normal(body: Body, tips: Tips) -> float:
     """Return the weight on a tip of share 1."""
     carried = tips.numbers[COUNT] > 0 and tips.sums[SHARE] > 0.0

@@ -99,7 +99,7 @@ def moments_of(tips: Tips) -> Symmetric:
     return s[SHARE], 0.0, s[SHARE], -s[SHARE_Y], s[SHARE_X], s[SHARE_R2]
 
 
-@inlined
+@compiled
 def move_tips(lattice: Lattice, edges: Floats, x: float, y: float, tips: Tips, old: Spans) -> Spans:
     """Bring the list up to date for a part with its reference point at (x, y); return its spans.
 
