@@ -137,3 +137,31 @@ def test_a_list_kept_up_to_date_is_the_list_made_anew(name, width, rng):
         assert sums[PUSH_X : PUSH_M + 1] == pytest.approx(follower.sums(), abs=1e-11)
         direct = second_moments(Contacts(tip_data(follower.tips), 1, None))
         assert moments_of(follower.tips) == pytest.approx(direct, rel=1e-10, abs=1e-11)
+
+
+ANGLES = np.linspace(0.0, 2 * np.pi, 300, endpoint=False)
+WAVES = (0.8 + 0.1 * np.cos(37 * ANGLES))[:, None]
+ODD_PARTS = {
+    "hundreds of vertices": Part(WAVES * np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])),
+    "between the sites": Part(0.03 * np.array([(0, 0), (1, 0), (0.4, 0.8)])),
+    "thin teeth": Part(
+        shapely.union_all(
+            [shapely.box(-0.9, -0.9, 0.9, -0.8)]
+            + [shapely.box(x, -0.85, x + 0.02, 0.9) for x in np.arange(-0.85, 0.85, 0.07)]
+        )
+    ),
+}
+
+
+@pytest.mark.parametrize("width", [1e-9, 0.1, 0.6])
+@pytest.mark.parametrize("name", ODD_PARTS)
+def test_odd_parts_that_leave_and_come_back(name, width, rng):
+    part, active = ODD_PARTS[name], rng.random((ROWS, COLUMNS)) < 0.7
+    follower, pose = Follower(part, width, active), np.zeros(3)
+    for step in range(40):
+        far = rng.uniform(-3.0, 3.0, 3) if step % 10 else np.array([50.0, 0.0, 0.0])
+        pose = far if step % 5 == 0 else pose + rng.normal(size=3) * [0.02, 0.02, 0.1]
+        table = follower.move(pose)
+        assert table == pytest.approx(covered(part, pose, width, active), abs=1e-12)
+        assert follower.tips.sums[SHARE] == pytest.approx(table.sum(), rel=1e-11, abs=1e-11)
+        assert follower.tips.sums[PUSH_X : PUSH_M + 1] == pytest.approx(follower.sums(), abs=1e-10)

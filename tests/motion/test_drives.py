@@ -8,10 +8,14 @@ import xarray
 from scipy.constants import g
 
 from limitsurf.actuators.activation import Activation, squeeze_activation
+from limitsurf.actuators.actuator_array import load_array
 from limitsurf.actuators.carrying import carry
-from limitsurf.errors import InputError
+from limitsurf.contacts.oscillating_contact import OscillatingContact
+from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
+from limitsurf.kernels.slide import slide
 from limitsurf.motion.drag import air_film_drag
+from limitsurf.motion.load_table import LoadTable
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.trajectory import EventKind, Outcome
@@ -193,6 +197,11 @@ def test_no_drag_is_for_inertial_motion_only(array64, square):
         ({"tolerance": 0.0}, "tolerance"),
         ({"drive": 3}, "drive"),
         ({"drive": lambda t: None}, "drive"),
+        ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1)}, "duration"),
+        ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "tilt": (0.01, 0.0)}, "duration"),
+        ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "duration": 0.2}, "load"),
+        ({"duration": [1.0, 2.0]}, "duration"),
+        ({"tip": "resonator"}, "tip"),
     ],
 )
 def test_bad_arguments_are_named(array64, paper_t, arguments, name):
@@ -245,3 +254,87 @@ def test_poses_between_frames_do_not_overshoot(array64, paper_t):
     assert y.min() >= path.poses[:, 1].min()
     with pytest.raises(InputError, match="times: must lie in"):
         path.at(path.duration + 1.0)
+
+
+def test_drives_that_turn_out_to_be_none_are_named(array64, paper_t):
+    drive = squeeze_activation(array64, 0.0)
+    for wrong in (lambda t: drive if t < 0.01 else None, Schedule([(0.0, drive), (0.01, "on")])):
+        with pytest.raises(InputError) as found:
+            simulate(paper_t, wrong, (0.0, 1e-3, 1.0), 0.05)
+        assert found.value.argument == "drive"
+
+
+def test_equal_activations_are_no_switch(array64, paper_t):
+    drive, start = squeeze_activation(array64, 0.0), (0.0, 1e-3, 1.0)
+    same = simulate(paper_t, lambda t: Activation(array64, drive.active.copy()), start, 0.05)
+    assert same.events == ()
+    alone = simulate(paper_t, drive, start, 0.05)
+    assert same.final_pose == pytest.approx(alone.final_pose, abs=1e-9)
+
+
+@pytest.mark.parametrize("tolerance", [None, 1e-4])
+def test_frames_rise_through_rests_and_switches(gripping, paper_t, tolerance):
+    one, other = squeeze_activation(gripping, 0.0), squeeze_activation(gripping, np.pi / 2)
+    start, strong = (0.0, 1e-3, 1.0), squeeze_activation(with_pixel(gripping), 1.0)
+    alone = simulate(paper_t, one, start, 4.0, tolerance=tolerance)
+    assert alone.outcome is Outcome.REST
+    plan = Schedule([(0.0, one), (4.0, strong), (4.1, one), (4.2, other)])
+    path = simulate(paper_t, plan, start, 4.5, tolerance=tolerance)
+    assert (np.diff(path.times) > 0.0).all()
+    assert path.at(3.999999) == pytest.approx(alone.final_pose, abs=1e-9)
+    asked = simulate(paper_t, lambda t: one, start, 8.0, tolerance=tolerance)
+    assert (np.diff(asked.times) > 0.0).all()
+    assert asked.outcome is Outcome.REST
+    assert asked.times[-2] < 4.0  # it waits without frames
+    late = simulate(paper_t, lambda t: one if t < 7.0 else strong, start, 7.5, tolerance=tolerance)
+    held = late.at(np.linspace(alone.duration + 0.5, 7.0, 20))
+    assert held == pytest.approx(np.tile(held[0], (20, 1)), abs=1e-9)
+
+
+def test_loads_of_frames_at_a_switch_are_those_that_follow(gripping, square):
+    right, left = all_towards(gripping, (1, 0)), all_towards(gripping, (-1, 0))
+    plan = Schedule([(0.0, right), (0.05, left)])
+    path = simulate(
+        square, plan, (0.0, *SYMMETRIC_Y), 0.1, mode="quasi-static", time_step=1e-3, frames=2
+    )
+    assert path.times == pytest.approx([0.0, 0.05, 0.1])
+    assert np.sign(path.loads[:, 0]).tolist() == [1, -1, -1]
+
+
+def test_two_tips_a_pixel_carry_what_one_cannot(square):
+    per_pixel = square.areal_density * g * load_array("resonator64").pixel.pitch ** 2
+    volts = load_array("resonator64").pixel.lifting_voltage(0.75 * per_pixel)
+    array = load_array("resonator64", voltage=volts)
+    right, up = all_towards(array, (1, 0)), all_towards(array, (0, 1))
+    with pytest.raises(PartTooHeavy):
+        simulate(square, right, duration=0.01)
+    both = Activation(array, right.active | up.active)
+    path = simulate(square, both, duration=0.01)
+    assert path.outcome is Outcome.TIME_LIMIT
+    assert (path.twists[-1, :2] > 0.0).all()
+
+
+def test_layouts_of_arrays_do_not_compile_anew(array64, paper_t):
+    drive = squeeze_activation(array64, 0.0)
+    simulate(paper_t, drive, duration=0.01)
+    compiled = len(slide.signatures)
+    wide = np.zeros((drive.active.shape[0], 2 * drive.active.shape[1]), bool)
+    wide[:, ::2] = drive.active
+    read_only = drive.active.copy()
+    read_only.setflags(write=False)
+    for active in (wide[:, ::2], np.asfortranarray(drive.active), read_only):
+        simulate(paper_t, Activation(array64, active), duration=0.01, drag=[1e-6, 1e-6, 1e-12])
+    assert len(slide.signatures) == compiled
+
+
+def test_dead_tips_carry_nothing(array64, paper_t):
+    array, start = array64.with_spread(strength=0.2, dead=0.1, seed=1), (1e-4, 2e-4, 0.5)
+    array = with_pixel(array, tip_width=0.0)
+    everything = Activation(array, np.ones_like(array.alive))
+    path = simulate(paper_t, everything, start, 0.01, mode="quasi-static", frames=1)
+    assert path.tips[0] == carry(everything, paper_t, start).active
+    alive = simulate(paper_t, Activation(array, array.alive), start, 0.01, mode="quasi-static")
+    assert np.array_equal(path.final_pose, alive.final_pose)
+    tip = OscillatingContact(0.3, [1.0, 0.0], [1.0, 1.0, -2.0], 1.0)
+    slow = simulate(paper_t, everything, start, 0.01, time_step=5e-3, frames=1, tip=tip)
+    assert slow.tips[0] == path.tips[0]

@@ -12,6 +12,7 @@ from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.feet import feet_motion
 from limitsurf.motion.field_motion import field_motion
+from limitsurf.motion.load_table import LoadTable
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.simulate_many import simulate_many
@@ -87,8 +88,61 @@ def test_fields_in_turn_wait_at_rest(block):
     )
     assert path.final_pose[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
     kinds = [e.kind for e in path.events]
-    assert kinds.count(EventKind.SWITCH) == 1
-    assert kinds[-1] is EventKind.REST
+    assert kinds == [EventKind.REST, EventKind.SWITCH, EventKind.START, EventKind.REST]
+
+
+def test_a_part_that_waits_rests_once(block):
+    squeeze, kind = DensityField.squeeze(0.0, 5.0), {"drag": (0.5, 0.5, 1e-3)}
+    plan = Schedule([(0.0, squeeze), (50.0, squeeze), (60.0, squeeze)])
+    path = simulate(block, plan, (0.01, 0.02, 0.5), 100.0, mode="quasi-static", **kind)
+    kinds = [e.kind for e in path.events]
+    assert kinds == [EventKind.REST, EventKind.SWITCH, EventKind.SWITCH]
+
+
+def test_the_pieces_of_a_gait_share_the_frames(block, feet):
+    push = ContactSet(feet.position, 0.1, np.array([[1.0, 0.0]] * 4))
+    gait = Schedule([(0.0, push), (0.01, feet)], period=0.02)
+    path = simulate(block, gait, duration=2.0, frames=400, method="steps")
+    assert 400 <= len(path.times) <= 602  # and those at the switches
+
+
+def test_an_interrupted_gait_leaves_a_readable_file(block, feet, tmp_path, monkeypatch):
+    import xarray
+
+    from limitsurf.motion import engines
+
+    moved = []
+
+    def interrupted(*arguments, **options):
+        if len(moved) == 3:
+            raise KeyboardInterrupt
+        moved.append(feet_motion(*arguments, **options))
+        return moved[-1]
+
+    monkeypatch.setattr(engines, "feet_motion", interrupted)
+    push = ContactSet(feet.position, 0.1, np.array([[1.0, 0.0]] * 4))
+    gait = Schedule([(0.0, push), (0.1, feet)], period=0.2)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(block, gait, duration=2.0, save=tmp_path / "gait.nc")
+    with xarray.open_dataset(tmp_path / "gait.nc", engine="scipy") as data:
+        assert data.attrs["outcome"] == "interrupted"
+        assert float(data.time[-1]) == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_schedules_of_different_kinds_are_named(block, feet, array64, first):
+    kinds = [feet, DensityField.squeeze(0.0, 5.0), squeeze_activation(array64, 0.0)]
+    plan = Schedule([(0.0, kinds[first]), (0.1, kinds[first - 1])])
+    with pytest.raises(InputError, match="drive: has a"):
+        simulate(block, plan, duration=1.0, drag=(1, 1, 1e-3))
+
+
+def test_a_table_of_loads_lasts_for_all_fields_in_turn(block):
+    table = LoadTable(lambda t: (np.sin(t), 0.0, 0.0), 0.1)
+    squeeze = DensityField.squeeze(0.0, 5.0)
+    plan = Schedule([(0.0, squeeze), (0.05, squeeze)])
+    with pytest.raises(InputError, match="load: is a table of"):
+        simulate(block, plan, duration=1.0, load=table, drag=(1, 1, 1e-3))
 
 
 def test_many_starts_of_any_drive(block, feet):

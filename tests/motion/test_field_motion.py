@@ -16,6 +16,7 @@ from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.field_motion import field_motion
+from limitsurf.motion.load_table import LoadTable
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.trajectory import EventKind, Outcome
 from limitsurf.planning.turn_function import turn_function
@@ -444,13 +445,19 @@ def test_rest_on_an_array_tends_to_that_in_its_density(paper_t, array64, continu
         ({"time_step": 0.0, "method": "steps"}, "time_step"),
         ({"time_step": 1e-12, "duration": 1.0, "method": "steps"}, "time_step"),
         ({"frames": 0}, "frames"),
+        ({"frames": 2.5}, "frames"),
+        ({"frames": "many"}, "frames"),
+        ({"part": "card"}, "part"),
+        ({"field": lambda points: points}, "field"),
+        ({"friction": 0.3}, "friction"),
+        ({"load": LoadTable(lambda t: (t, 0.0, 0.0), 1.0), "duration": 2.0}, "load"),
         ({"load": (1.0, 0.0)}, "load"),
         ({"friction": UniformFriction(CARD, 1.0), "load": lambda t: (t, 0.0, 0.0)}, "method"),
     ],
 )
 def test_bad_arguments_are_named(more, argument):
     with pytest.raises(InputError) as found:
-        field_motion(CARD, SQUEEZE, **more)
+        field_motion(**({"part": CARD, "field": SQUEEZE} | more))
     assert found.value.argument == argument
 
 
@@ -465,3 +472,19 @@ def test_a_mass_needs_an_areal_density():
     with pytest.raises(InputError) as found:
         field_motion(Part([(0, 0), (1, 0), (0, 1)]), SQUEEZE)
     assert found.value.argument == "areal_density"
+
+
+@pytest.mark.parametrize("time_step", [0.03, 1.0])
+def test_steps_end_at_the_limit(time_step):
+    path = field_motion(CARD, SQUEEZE, duration=0.1, method="steps", time_step=time_step)
+    assert path.duration == pytest.approx(0.1, rel=1e-12)
+    assert len(path.times) == 1 + np.ceil(0.1 / time_step)
+
+
+def test_a_table_of_a_constant_load_lets_a_part_rest():
+    start, load = (0.1, 0.2, 0.3), (0.0, 0.3, 0.1)
+    kind = KINDS["quasi-static"]
+    one = field_motion(CARD, SQUEEZE, start, load=load, **kind)
+    other = field_motion(CARD, SQUEEZE, start, load=LoadTable(load, 1.0), **kind)
+    assert one.outcome is other.outcome
+    assert np.array_equal(one.final_pose, other.final_pose)

@@ -217,11 +217,19 @@ def test_trajectory_as_a_dataset(array64, paper_t):
         ({"time_step": 1e-12}, "time_step"),
         ({"mode": "fast"}, "mode"),
         ({"frames": 0}, "frames"),
+        ({"frames": 2.5}, "frames"),
+        ({"frames": "many"}, "frames"),
+        ({"pose": "here"}, "pose"),
+        ({"part": "paper_t"}, "part"),
+        ({"save": "no such folder/run.nc"}, "save"),
+        ({"save": "."}, "save"),
+        ({"save": 3}, "save"),
     ],
 )
 def test_bad_arguments_are_named(array64, paper_t, arguments, name):
+    arguments = {"part": paper_t, "drive": squeeze_activation(array64, 0.0)} | arguments
     with pytest.raises(InputError) as caught:
-        simulate(paper_t, squeeze_activation(array64, 0.0), **arguments)
+        simulate(**arguments)
     assert caught.value.argument == name
 
 
@@ -231,3 +239,23 @@ def test_parts_without_density_and_arrays_without_push(array64):
     idle = with_pixel(array64, offset_fraction=0.0)
     with pytest.raises(InputError, match="do not push"):
         simulate(Part.from_file("paper_t"), squeeze_activation(idle, 0.0))
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_adaptive_steps_end_at_the_edge(array64, square, tolerance):
+    drive, start = all_towards(array64, (1.0, 0.0)), (5e-3, *SYMMETRIC_Y)
+    path = simulate(square, drive, start, 10.0, tolerance=tolerance)
+    assert path.outcome is Outcome.LEFT_ARRAY
+    assert 0.0 < path.final_pose[0] - 5.4e-3 <= tolerance * square.circumradius
+    thrown = simulate(square, drive, (0.0, *SYMMETRIC_Y), twist=(1.0, 0, 0), tolerance=tolerance)
+    assert 0.0 < thrown.final_pose[0] - 5.4e-3 <= tolerance * square.circumradius
+    residual = np.abs(path.energy.residual).max()
+    assert residual < 1e-12 * path.energy.work[-1]
+
+
+def test_a_file_that_cannot_be_written_is_named_before_the_run(paper_t, tmp_path):
+    def never(time):
+        raise AssertionError("the drive was asked")
+
+    with pytest.raises(InputError, match="save: lies in no folder"):
+        simulate(paper_t, never, duration=1.0, save=tmp_path / "missing" / "run.nc")

@@ -59,8 +59,28 @@ def test_an_interrupted_run_leaves_a_readable_file(drive, paper_t, tmp_path):
         ({"poses": 3, "seed": -1}, "seed"),
         ({"poses": 3, "start_offset": -1.0}, "start_offset"),
         ({"poses": 3, "frames": 3}, "frames"),
+        ({"poses": True}, "samples"),
+        ({"poses": 3, "seed": 1.5}, "seed"),
+        ({"poses": 3, "start_offset": "far"}, "start_offset"),
+        ({"poses": 3, "jobs": 0}, "jobs"),
+        ({"poses": 3, "jobs": 1.5}, "jobs"),
+        ({"poses": 3, "twist": (1.0, 0.0)}, "twist"),
+        ({"poses": 3, "save": "no such folder/runs.nc"}, "save"),
     ],
 )
 def test_bad_arguments_are_named(drive, paper_t, arguments, name):
     with pytest.raises((InputError, TypeError), match=name):
         simulate_many(paper_t, drive, **arguments)
+
+
+def test_runs_begin_with_a_twist(drive, paper_t):
+    starts, twist = random_starts(2, 3, 1e-3), (0.02, 0.0, 1.0)
+    runs = simulate_many(paper_t, drive, starts, 0.05, twist=twist, jobs=1)
+    for k, start in enumerate(starts):
+        alone = simulate(paper_t, drive, start, 0.05, twist=twist)
+        assert np.array_equal(runs.finals[k], alone.final_pose)
+        assert np.array_equal(runs.replay(k).final_pose, alone.final_pose)
+    still = simulate_many(paper_t, drive, starts, 0.05, jobs=1)
+    assert np.abs(runs.finals - still.finals).max() > 1e-4
+    with pytest.raises(InputError, match="run: must be a whole number"):
+        runs.replay(0.5)

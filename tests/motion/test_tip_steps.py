@@ -119,3 +119,9 @@ def test_several_tips_are_refused(array64, square):
     tip = OscillatingContact(0.3, [[1.0, 0.0]] * 2, [1.0, 1.0, -2.0], 1.0)
     with pytest.raises(InputError, match="tip: has shape"):
         simulate(square, all_towards(array64, (1, 0)), tip=tip)
+
+
+def test_a_tolerance_is_refused(array64, square):
+    tip = OscillatingContact(0.3, [1.0, 0.0], [1.0, 1.0, -2.0], 1.0)
+    with pytest.raises(InputError, match="tolerance: is not for"):
+        simulate(square, all_towards(array64, (1, 0)), tip=tip, tolerance=1e-3)

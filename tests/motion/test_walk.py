@@ -294,3 +294,7 @@ def test_bad_arguments_are_named(changed, argument):
     with pytest.raises(InputError) as found:
         walk(**(good | changed))
     assert found.value.argument == argument
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers():
+    assert len(walk(legs(1.0), 1.0, drag=DRAG, frames=np.int64(3)).times) == 4

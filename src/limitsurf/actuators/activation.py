@@ -31,7 +31,7 @@ class Activation:
     array : ActuatorArray
         The array.
     active : (R, C) bool
-        True at the sites that run.
+        True at the sites that are switched on; see `running`.
     line : float or None
         World angle of the line that the activation squeezes towards [rad], if any.
     """
@@ -45,6 +45,11 @@ class Activation:
         expected = self.array.site_directions.shape[:2]
         if self.active.shape != expected or self.active.dtype != np.bool_:
             raise InputError("active", f"must be bool of shape {expected}", value=self.active.shape)
+
+    @property
+    def running(self) -> NDArray[np.bool_]:
+        """Which actuators run, (R, C): those that are active and not dead."""
+        return self.active if self.array.spread is None else self.active & self.array.alive
 
     def __repr__(self) -> str:
         """Return the number of running actuators."""

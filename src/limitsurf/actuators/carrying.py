@@ -117,5 +117,5 @@ def _under(
     spots = np.stack([x0 + array.site_pitch * columns, y0 + array.site_pitch * rows], axis=-1)
     shapely.prepare(outline)
     inside = shapely.contains_xy(outline, spots[..., 0], spots[..., 1])
-    runs = activation.active & array.alive
+    runs = activation.running
     return spots[inside], runs[inside], array.site_directions[inside]

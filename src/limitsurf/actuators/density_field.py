@@ -15,7 +15,7 @@ from limitsurf.actuators.density_piece import DensityPiece, finite
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.density import JACOBIAN, POTENTIAL, STATE, Pieces, density_states
-from limitsurf.sets.arguments import as_array, as_points
+from limitsurf.sets.arguments import as_array, as_number, as_points
 
 __all__ = ["DensityField", "push_density"]
 
@@ -58,6 +58,9 @@ class DensityField:
         self._pieces = tuple(pieces)
         if not self._pieces:
             raise InputError("pieces", "are none", remedy="give one, perhaps of zero density")
+        for piece in self._pieces:
+            if not isinstance(piece, DensityPiece):
+                raise InputError("pieces", "hold one that is no DensityPiece", value=piece)
 
     @classmethod
     def uniform(cls, angle: float, density: float) -> DensityField:
@@ -96,8 +99,9 @@ class DensityField:
         A multiple of the identity pulls the centroid to the center without moment; a symmetric K
         has a potential, an elliptic one turns parts.
         """
-        K = np.asarray(stiffness, dtype=np.float64)
-        K = as_array("stiffness", K * np.eye(2) if K.ndim == 0 else K, 2, 2)
+        scalar = np.ndim(stiffness) == 0
+        K = as_number("stiffness", stiffness) * np.eye(2) if scalar else stiffness
+        K = as_array("stiffness", K, 2, 2)
         level = 0.0 if K[0, 1] == K[1, 0] else None
         return cls([DensityPiece((0.0, 0.0), slope=-K, anchor=center, level=level)])
 

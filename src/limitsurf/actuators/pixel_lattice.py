@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from numbers import Integral
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.actuators.spread import SiteSpread, draw_spread
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_number
 
 __all__ = ["PixelLattice", "headings"]
 
@@ -29,8 +28,7 @@ def headings(count: int, first: float = 0.0) -> Array:
            [-1.,  0.],
            [ 0., -1.]])
     """
-    if not isinstance(count, Integral) or count < 1:
-        raise InputError("count", "must be a whole number from 1 on", value=count)
+    as_count("count", count)
     angle = first + 2 * np.pi * np.arange(count) / count
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
@@ -195,10 +193,8 @@ class PixelLattice:
 
 def _indices(rows: int, columns: int) -> NDArray[np.int64]:
     """Return row and column of every pixel (2, n)."""
-    for name, count in (("rows", rows), ("columns", columns)):
-        if not isinstance(count, Integral) or count < 1:
-            raise InputError(name, "must be a whole number from 1 on", value=count)
-    return np.indices((rows, columns), dtype=np.int64).reshape(2, -1)
+    shape = as_count("rows", rows), as_count("columns", columns)
+    return np.indices(shape, dtype=np.int64).reshape(2, -1)
 
 
 def by_pixel(sites: NDArray, array: ActuatorArray) -> NDArray:  # type: ignore[type-arg]

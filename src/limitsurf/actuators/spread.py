@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_number
+from limitsurf.sets.arguments import as_count, as_number
 
 __all__ = ["SiteSpread", "draw_spread"]
 
@@ -77,9 +76,7 @@ def draw_spread(
             raise InputError(name, "must be finite and not negative", value=value)
     if not 0.0 <= as_number("dead", dead) <= 1.0:
         raise InputError("dead", "must lie between 0 and 1", value=dead)
-    if not isinstance(seed, Integral) or seed < 0:
-        raise InputError("seed", "must be a whole number from 0 on", value=seed)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(as_count("seed", seed, 0))
     width = np.sqrt(np.log1p(strength**2))
     return SiteSpread(
         strength=rng.lognormal(-0.5 * width**2, width, shape),

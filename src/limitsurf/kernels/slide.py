@@ -30,6 +30,7 @@ from limitsurf.kernels.slide_step import (
     Pace,
     Work,
     find_tips,
+    is_over,
     take_step,
 )
 from limitsurf.kernels.tips import COUNT, new_tips
@@ -52,14 +53,15 @@ def _take_adaptively(
 ) -> tuple[bool, int, Spans]:
     """Take two half steps that differ little from a whole one, of at most `most`.
 
-    Return whether the part rests instead, the status, and the spans.
+    Steps to where the part is off the array or not lifted get shorter until they move it no more
+    than the local error. Return whether the part rests instead, the status, and the spans.
     """
     before = motion.copy()
     while True:
         dt = min(motion[STEP], most)
         if take_step(body, ground, pace, motion, dt, work):
             return True, TIME_LIMIT, spans
-        whole = motion[POSE : POSE + 3].copy()
+        target = motion[POSE : POSE + 3].copy()
         heaviest, worst, width = motion[HEAVIEST], motion[WORST], motion[WIDTH]
         motion[:] = before
         motion[HEAVIEST], motion[WORST], motion[WIDTH] = heaviest, worst, width
@@ -68,11 +70,13 @@ def _take_adaptively(
         status, spans = find_tips(body, ground, motion, spans, work)
         if status == TIME_LIMIT:
             take_step(body, ground, pace, motion, 0.5 * dt, work)
-        error = math.hypot(motion[POSE] - whole[0], motion[POSE + 1] - whole[1])
-        error += body.reach * abs(motion[POSE + 2] - whole[2])
+        if status != TIME_LIMIT or not is_over(body, ground, motion, work):
+            target = before[POSE : POSE + 3]
+        error = math.hypot(motion[POSE] - target[0], motion[POSE + 1] - target[1])
+        error += body.reach * abs(motion[POSE + 2] - target[2])
         better = 0.9 * math.sqrt(pace.error * body.reach / max(error, 1e-300))
         next_step = min(max(dt * min(max(better, 0.2), 2.0), _SHORTEST * pace.dt), pace.dt)
-        if status != TIME_LIMIT or better >= 0.9 or dt <= _SHORTEST * pace.dt:
+        if better >= 0.9 or dt <= _SHORTEST * pace.dt:
             motion[STEP] = next_step
             return False, status, spans
         motion[:] = before
@@ -139,8 +143,8 @@ def slide(
             taken += 1
             status = REST if rests else status
         stop = over or rests or taken >= steps
-        due = before[TIME] >= motion[NEXT_FRAME] - early or rests or (over and final)
-        due = due or status not in (TIME_LIMIT, REST)
+        due = not over and before[TIME] >= motion[NEXT_FRAME] - early
+        due = due or rests or (over and (final or status != TIME_LIMIT))
         if due and written < frames.shape[0]:
             _write(body, before, motion, tips.numbers[COUNT], frames[written])
             written += 1

@@ -69,6 +69,7 @@ __all__ = [
     "Pace",
     "Work",
     "find_tips",
+    "is_over",
     "new_motion",
     "take_step",
 ]
@@ -156,12 +157,18 @@ def _place(edges: Floats, motion: Floats, out: Floats) -> None:
 
 
 @compiled
+def is_over(body: Body, ground: Ground, motion: Floats, work: Work) -> bool:
+    """Place the edges; return whether all of the part is over the array."""
+    _place(body.edges, motion, work.edges)
+    return holds(ground.lattice, work.edges)
+
+
+@compiled
 def find_tips(
     body: Body, ground: Ground, motion: Floats, spans: Spans, work: Work
 ) -> tuple[int, Spans]:
     """Bring the tips up to date; return TIME_LIMIT, or why there is no step, and the spans."""
-    _place(body.edges, motion, work.edges)
-    if not holds(ground.lattice, work.edges):
+    if not is_over(body, ground, motion, work):
         return LEFT_ARRAY, spans
     x, y = motion[POSE], motion[POSE + 1]
     spans = move_tips(ground.lattice, work.edges, x, y, work.tips, spans)
@@ -173,7 +180,8 @@ def find_tips(
 @compiled
 def _normal(body: Body, tips: Tips) -> float:
     """Return the weight on a tip of share 1."""
-    return body.weight / tips.sums[SHARE] if tips.numbers[COUNT] > 0 else np.inf
+    carried = tips.numbers[COUNT] > 0 and tips.sums[SHARE] > 0.0
+    return body.weight / tips.sums[SHARE] if carried else np.inf
 
 
 @compiled

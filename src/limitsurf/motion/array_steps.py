@@ -13,6 +13,7 @@ from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.kernels.lattice import Lattice
 from limitsurf.kernels.slide import FRAME, slide
 from limitsurf.kernels.slide_step import TIME, Body, Ground, Pace
+from limitsurf.sets.arguments import writable
 
 __all__ = ["ArraySteps", "ground_of"]
 
@@ -64,7 +65,7 @@ def ground_of(activation: Activation) -> Ground:
         lattice=Lattice(
             *array.first_site,
             array.site_pitch,
-            activation.active,
+            writable(activation.running),
             _directions(array),
             pixel.tip_width,
         ),
@@ -77,4 +78,4 @@ def ground_of(activation: Activation) -> Ground:
 @lru_cache(maxsize=8)
 def _directions(array: ActuatorArray) -> Array:
     """Return the pushes of all sites; many motions share an array."""
-    return array.site_directions
+    return writable(array.site_directions)

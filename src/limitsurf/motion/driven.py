@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 from limitsurf.actuators.activation import Activation
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.errors import InputError
-from limitsurf.kernels.slide_step import HEAVIEST, STEPS, TIME, TWIST_NOW, WORST, new_motion
+from limitsurf.kernels.slide_step import (
+    HEAVIEST,
+    NEXT_FRAME,
+    STEPS,
+    TIME,
+    TWIST_NOW,
+    WORST,
+    new_motion,
+)
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.time_scales import refuse_heavy
 from limitsurf.motion.trajectory import (
@@ -23,7 +31,7 @@ from limitsurf.motion.trajectory import (
     Trajectory,
 )
 
-__all__ = ["Driven", "DrivenMotion", "Stepper", "Watch"]
+__all__ = ["Driven", "DrivenMotion", "Stepper", "Watch", "as_activation"]
 
 Array = NDArray[np.float64]
 Driven = Activation | Schedule[Activation] | Callable[[float], Activation]
@@ -65,7 +73,7 @@ class DrivenMotion:
 
     def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
         """Return the motion from a pose and a twist."""
-        motion, log = new_motion(pose, twist), _Log()
+        motion, log = new_motion(np.array(pose), np.array(twist)), _Log()
         try:
             outcome, array = self._run_all(motion, log, watch)
         except BaseException:
@@ -90,15 +98,17 @@ class DrivenMotion:
         last, outcome = None, Outcome.TIME_LIMIT
         for activation, until, final in _pieces(self.drive, self.duration, self.step):
             begin = float(motion[TIME])
-            if last is not None and activation is not last:
+            if last is not None and not _same(activation, last):
                 log.add(begin, EventKind.SWITCH)
             last = activation
             outcome = self._run(activation, motion, until, final, log, watch)
-            log.tell(outcome, begin, float(motion[TIME]))
+            waits = log.tell(outcome, begin, float(motion[TIME]))
             if outcome in (Outcome.LEFT_ARRAY, Outcome.NOT_LIFTED):
                 break
             if outcome is Outcome.REST and not final:
-                motion[TIME] = until
+                if waits:
+                    log.rows.pop()
+                motion[TIME] = motion[NEXT_FRAME] = until
                 motion[TWIST_NOW : TWIST_NOW + 3] = 0.0
         assert last is not None
         return outcome, last.array
@@ -132,10 +142,11 @@ class _Log:
     def add(self, time: float, kind: EventKind) -> None:
         self.events.append(MotionEvent(time, kind))
 
-    def tell(self, outcome: Outcome, begin: float, end: float) -> None:
-        """Add what a piece of the motion from begin to end tells."""
+    def tell(self, outcome: Outcome, begin: float, end: float) -> bool:
+        """Add what a piece of the motion from begin to end tells; return if all of it is rest."""
         rests = outcome is Outcome.REST
-        if self.still and not (rests and end == begin):
+        waits = self.still and rests and end == begin
+        if self.still and not waits:
             self.add(begin, EventKind.START)
             self.still = False
         if rests and not self.still:
@@ -143,6 +154,7 @@ class _Log:
         if outcome is Outcome.LEFT_ARRAY:
             self.add(end, EventKind.EDGE)
         self.still = rests
+        return waits
 
     def trajectory(self, motion: Array, outcome: Outcome) -> Trajectory:
         table = np.concatenate(self.rows)
@@ -173,4 +185,23 @@ def _pieces(
     else:
         count = max(int(np.ceil(duration / step - 1e-9)), 1)
         for k in range(count):
-            yield drive(k * step), min((k + 1) * step, duration), k == count - 1
+            yield as_activation(drive(k * step)), min((k + 1) * step, duration), k == count - 1
+
+
+def as_activation(drive: Any) -> Activation:
+    """Return what drives an array; InputError unless it is an activation."""
+    if isinstance(drive, Activation):
+        return drive
+    raise InputError(
+        "drive",
+        f"is or gives a {type(drive).__name__}",
+        remedy="give an Activation or a function of time that returns one, a DensityField, a "
+        "ContactSet, or a Schedule of these",
+    )
+
+
+def _same(one: Activation, other: Activation) -> bool:
+    """Return whether the same actuators run; functions of time may return new objects."""
+    return one is other or (
+        one.array is other.array and bool(np.array_equal(one.active, other.active))
+    )

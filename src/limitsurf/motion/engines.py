@@ -16,17 +16,18 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.driven import Driven, DrivenMotion, Watch
+from limitsurf.motion.driven import Driven, DrivenMotion, Watch, as_activation
 from limitsurf.motion.feet import feet_motion
 from limitsurf.motion.field_motion import field_motion
 from limitsurf.motion.in_turn import Move, in_turn
 from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.motion.loads import gravity, with_gravity
-from limitsurf.motion.options import Options, checked_drag, positive
+from limitsurf.motion.options import Options, checked_drag
 from limitsurf.motion.schedule import Schedule
-from limitsurf.motion.time_scales import TimeScales, check_lift, time_scales
+from limitsurf.motion.time_scales import TimeScales, time_scales
 from limitsurf.motion.tip_steps import TipSteps
 from limitsurf.motion.trajectory import Trajectory
+from limitsurf.sets.arguments import as_positive
 from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
 __all__ = ["Drive", "Engine", "engine_of"]
@@ -59,12 +60,11 @@ class InTurn:
     move: Move[Any]
 
     def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
-        """Return the motion from a pose and a twist; it is watched only at its end."""
+        """Return the motion from a pose and a twist; it is watched when a drive is done."""
         if isinstance(self.drive, Schedule):
             assert self.duration is not None
-            trajectory = in_turn(self.drive.pieces(self.duration), self.move, pose, twist)
-        else:
-            trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
+            return in_turn(self.drive.pieces(self.duration), self.move, pose, twist, watch)
+        trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
         if watch is not None:
             watch(trajectory.duration, None)
         return trajectory
@@ -73,29 +73,35 @@ class InTurn:
 def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) -> Engine:
     """Return what moves a part."""
     chosen = Options(**options)
-    limit = None if duration is None else positive("duration", duration)
-    first = drive.entries[0][1] if isinstance(drive, Schedule) else drive
+    if not isinstance(part, Part):
+        raise InputError("part", "is no Part", value=part)
+    limit = None if duration is None else as_positive("duration", duration)
+    first = _first(drive)
     if isinstance(first, ContactSet):
         return _on_feet(part, drive, limit, chosen)
     if isinstance(first, DensityField):
         return _in_field(part, drive, limit, chosen)
-    first = first(0.0) if callable(first) else first
-    if not isinstance(first, Activation):
-        raise InputError(
-            "drive",
-            f"is or gives a {type(first).__name__}",
-            remedy="give an Activation or a function of time that returns one, a DensityField, a "
-            "ContactSet, or a Schedule of these",
-        )
     chosen.refuse("arrays", "friction")
-    return _on_array(part, drive, first, limit, chosen)  # type: ignore[arg-type]
+    asked = drive(0.0) if callable(drive) else first
+    return _on_array(part, drive, as_activation(asked), limit, chosen)  # type: ignore[arg-type]
+
+
+def _first(drive: Drive) -> Any:
+    """Return what drives first; InputError for a schedule of different kinds."""
+    if not isinstance(drive, Schedule):
+        return drive
+    first: Any = drive.entries[0][1]
+    for _, each in drive.entries:
+        if type(each) is not type(first):
+            what = f"has a {type(first).__name__} and a {type(each).__name__}"
+            raise InputError("drive", what, remedy="schedule drives of one kind")
+    return first
 
 
 def _on_array(
     part: Part, drive: Driven, first: Activation, duration: float | None, options: Options
 ) -> Engine:
     array = first.array
-    check_lift(part, array)
     weight = gravity(part, options.tilt)
     drag = air_film_drag(part, array)
     if options.drag is not None:
@@ -106,7 +112,8 @@ def _on_array(
     mass = np.array([part.mass, part.mass, part.inertia])
     if options.mode == "quasi-static":
         mass = np.zeros(3)
-    body = Body(part.circumradius, part.edges, weight.normal, mass, drag, table.kernel)
+    edges = np.array(part.edges)  # a copy: kernels are compiled anew for read-only arrays
+    body = Body(part.circumradius, edges, weight.normal, mass, drag, table.kernel)
     dt = _longest_step(options, scales, limit)
     usual = limit if duration is not None else limit / _USUALLY
     every, rest = max(usual / options.frames, dt), REST_SPEED * scales.speed
@@ -148,7 +155,7 @@ def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options)
             mode=options.mode,
             time_step=options.time_step,
             tolerance=options.tolerance,
-            frames=options.frames,
+            frames=_share(options.frames, time, duration),
             **given,
         )
 
@@ -160,6 +167,8 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
     if duration is None and isinstance(drive, Schedule):
         raise InputError("duration", "is missing", remedy="give it for schedules")
     load: LoadLike = options.load
+    if isinstance(load, LoadTable) and duration is not None:
+        load = LoadTable.of(load, duration)
     if np.any(options.tilt):
         load = with_gravity(gravity(part, options.tilt), options.load, duration)
     given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
@@ -178,11 +187,18 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
             friction=options.friction,
             load=_from(load, begin),
             time_step=options.time_step,
-            frames=options.frames,
+            frames=_share(options.frames, time, duration),
             **given,
         )
 
     return InTurn(drive, duration, move)
+
+
+def _share(frames: int, time: float | None, duration: float | None) -> int:
+    """Return the frames of a piece of a schedule."""
+    if time is None or duration is None:
+        return frames
+    return max(round(frames * time / duration), 1)
 
 
 def _from(load: LoadLike, begin: float) -> LoadLike:

@@ -13,9 +13,10 @@ from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.field_steps import ENERGIES, FRAME, field_steps
 from limitsurf.motion.field_ode import field_ode
-from limitsurf.motion.field_problem import ExternalLoad, FieldProblem, field_problem
+from limitsurf.motion.field_problem import FieldProblem, field_problem
+from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_positive
 from limitsurf.tolerances import CONTACT_SUM
 
 __all__ = ["field_motion"]
@@ -36,7 +37,7 @@ def field_motion(
     mode: Literal["inertial", "quasi-static"] = "inertial",
     drag: ArrayLike | None = None,
     friction: UniformFriction | None = None,
-    load: ArrayLike | ExternalLoad | None = None,
+    load: LoadLike = None,
     method: Literal["steps", "events"] = "events",
     time_step: float | None = None,
     tolerance: float = 1e-9,
@@ -74,8 +75,8 @@ def field_motion(
         friction. ``"events"`` integrates the smooth motion between stops with control of the error
         and finds the stops; it does not take friction together with mass and a changing load.
     time_step : float, optional
-        Step [s] of ``"steps"``; by default a two-hundredth of the time for a circumradius, or a
-        little less, so that the last one ends at the limit.
+        Step [s] of ``"steps"``, or a little less, so that the last one ends at the limit; by
+        default a two-hundredth of the time for a circumradius.
     tolerance : float
         Error of ``"events"``, relative to circumradius, speed and work.
     frames : int
@@ -110,23 +111,24 @@ def field_motion(
     start, speed = as_array("pose", pose, 3), as_array("twist", twist, 3)
     if method not in ("steps", "events"):
         raise InputError("method", "is unknown", value=method, remedy="use steps or events")
-    if frames < 1:
-        raise InputError("frames", "must be at least 1", value=frames)
+    count = as_count("frames", frames)
     problem = field_problem(part, field, start, speed, mode, drag, friction, load)
-    limit = _positive("duration", 60.0 * problem.time if duration is None else duration)
+    limit = as_positive("duration", 60.0 * problem.time if duration is None else duration)
+    if isinstance(load, LoadTable):
+        LoadTable.of(load, limit)
     if method == "events":
-        return field_ode(problem, start, speed, limit, _positive("tolerance", tolerance), frames)
-    whole = np.ceil(limit * _STEPS_PER_TIME / problem.time)
-    dt = limit / whole if time_step is None else _positive("time_step", time_step)
-    return _by_steps(problem, start, speed, limit, dt, frames)
+        return field_ode(problem, start, speed, limit, as_positive("tolerance", tolerance), count)
+    default = problem.time / _STEPS_PER_TIME
+    longest = default if time_step is None else as_positive("time_step", time_step)
+    steps = np.ceil(limit / longest * (1.0 - 1e-12))
+    if steps > _MAX_STEPS:
+        raise InputError("time_step", f"needs {steps:.3g} steps", value=longest, remedy="raise it")
+    return _by_steps(problem, start, speed, limit / steps, int(steps), count)
 
 
 def _by_steps(
-    problem: FieldProblem, pose: Array, twist: Array, limit: float, dt: float, frames: int
+    problem: FieldProblem, pose: Array, twist: Array, dt: float, steps: int, frames: int
 ) -> Trajectory:
-    steps = int(np.ceil(limit / dt * (1.0 - 1e-12)))
-    if steps > _MAX_STEPS:
-        raise InputError("time_step", f"needs {steps:.3g} steps", value=dt, remedy="raise it")
     stride = max(1, steps // frames)
     whens = dt * np.arange(1, 2 if problem.steady else steps + 1)  # loads at the ends of the steps
     loads = np.array([problem.external(float(t)) for t in whens])
@@ -157,10 +159,3 @@ def _by_steps(
         energy=EnergyBalance(*table[:, ENERGIES:].T.copy()),
         events=(MotionEvent(end, EventKind.REST),) if rests else (),
     )
-
-
-def _positive(name: str, value: float) -> float:
-    number = as_number(name, value)
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(name, "must be positive", value=value)
-    return number

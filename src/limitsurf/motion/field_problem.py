@@ -17,6 +17,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.field_steps import FieldBody, uniform_step
 from limitsurf.kernels.project_uniform import ANSWER
 from limitsurf.kernels.uniform_friction import new_room, uniform_patch
+from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.sets.arguments import as_array
 from limitsurf.tolerances import CONTACT_SUM, REST_SPEED
 
@@ -115,9 +116,14 @@ def field_problem(
     mode: Literal["inertial", "quasi-static"],
     drag: ArrayLike | None,
     friction: UniformFriction | None,
-    load: ArrayLike | ExternalLoad | None,
+    load: LoadLike,
 ) -> FieldProblem:
     """Check what acts on a part, and find the scales of its motion."""
+    for name, value, kind in (("part", part, Part), ("field", field, DensityField)):
+        if not isinstance(value, kind):
+            raise InputError(name, f"is no {kind.__name__}", value=value)
+    if not isinstance(friction, UniformFriction | None):
+        raise InputError("friction", "is no UniformFriction", value=friction)
     if mode not in ("inertial", "quasi-static"):
         raise InputError("mode", "is unknown", value=mode, remedy="use inertial or quasi-static")
     viscous = np.array(as_array("drag", np.zeros(3) if drag is None else drag, 3))
@@ -133,6 +139,8 @@ def field_problem(
     mass = np.zeros(3)
     if mode == "inertial":
         mass[:] = part.mass, part.mass, part.inertia
+    if isinstance(load, LoadTable) and load.steady:
+        load = load(0.0)
     given = load if callable(load) else as_load(load)
     force = _force_scale(part, field, pose, given)
     if friction is not None:

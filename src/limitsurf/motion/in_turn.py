@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from limitsurf.motion.driven import Watch
 from limitsurf.motion.trajectory import (
     EnergyBalance,
     EventKind,
@@ -26,20 +28,32 @@ Move = Callable[[Drive, Array, Array, float, Any], Trajectory]
 
 
 def in_turn(
-    pieces: Sequence[tuple[float, float, Drive]], move: Move[Drive], pose: Array, twist: Array
+    pieces: Sequence[tuple[float, float, Drive]],
+    move: Move[Drive],
+    pose: Array,
+    twist: Array,
+    watch: Watch | None = None,
 ) -> Trajectory:
     """Return the motion on drives ``(begin, end, drive)`` of a schedule, each from where it was.
 
     A part that rests waits for the next drive.
     """
     parts: list[tuple[float, Trajectory]] = []
-    for begin, end, drive in pieces:
-        found = move(drive, pose, twist, begin, end - begin)
-        parts.append((begin, found))
-        if found.outcome not in (Outcome.REST, Outcome.TIME_LIMIT):
-            break
-        rests = found.outcome is Outcome.REST
-        pose, twist = found.final_pose, np.zeros(3) if rests else found.twists[-1]
+    try:
+        for begin, end, drive in pieces:
+            found = move(drive, pose, twist, begin, end - begin)
+            parts.append((begin, found))
+            if watch is not None:
+                watch(begin + found.duration, None)
+            if found.outcome not in (Outcome.REST, Outcome.TIME_LIMIT):
+                break
+            rests = found.outcome is Outcome.REST
+            pose, twist = found.final_pose, np.zeros(3) if rests else found.twists[-1]
+    except BaseException:
+        if watch is not None and parts:
+            record = replace(joined(parts), outcome=Outcome.INTERRUPTED)
+            watch(record.duration, record)
+        raise
     return joined(parts)
 
 
@@ -48,11 +62,6 @@ def joined(parts: Sequence[tuple[float, Trajectory]]) -> Trajectory:
 
     At the time of a switch the record holds what follows it.
     """
-    events: list[MotionEvent] = []
-    for k, (begin, part) in enumerate(parts):
-        if k > 0:
-            events.append(MotionEvent(begin, EventKind.SWITCH))
-        events += [MotionEvent(begin + e.time, e.kind, e.where) for e in part.events]
 
     def column(name: str) -> Array:
         ends = [getattr(part, name)[: _kept(k, parts)] for k, (_, part) in enumerate(parts)]
@@ -70,8 +79,25 @@ def joined(parts: Sequence[tuple[float, Trajectory]]) -> Trajectory:
         outcome=last.outcome,
         worst_error=max(part.worst_error for _, part in parts),
         energy=_energies(parts),
-        events=tuple(events),
+        events=tuple(_events(parts)),
     )
+
+
+def _events(parts: Sequence[tuple[float, Trajectory]]) -> list[MotionEvent]:
+    """Return the events in order; a part that waits at rest neither starts nor rests again."""
+    events: list[MotionEvent] = []
+    rests = False
+    for k, (begin, part) in enumerate(parts):
+        if k > 0:
+            events.append(MotionEvent(begin, EventKind.SWITCH))
+        own = [MotionEvent(begin + e.time, e.kind, e.where) for e in part.events]
+        changes = [e.kind for e in own if e.kind in (EventKind.START, EventKind.REST)]
+        waits = rests and part.outcome is Outcome.REST and part.duration == 0.0
+        if rests and not waits and changes[:1] != [EventKind.START]:
+            events.append(MotionEvent(begin, EventKind.START))
+        events += [] if waits else own
+        rests = part.outcome is Outcome.REST
+    return events
 
 
 def _kept(k: int, parts: Sequence[tuple[float, Trajectory]]) -> int:

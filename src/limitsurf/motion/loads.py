@@ -65,15 +65,9 @@ def with_gravity(weight: Gravity, load: LoadLike, duration: float | None) -> Loa
 
     Loads that change in time need a duration.
     """
-    if callable(load) and not isinstance(load, LoadTable):
-        given = load
-        if duration is None:
-            raise InputError(
-                "duration", "is missing", remedy="give it, as the load changes in time"
-            )
-        if weight.load.any():
-            return LoadTable(lambda t: np.asarray(given(t)) + weight.load, duration)
-        return LoadTable(given, duration)
+    varies = not load.steady if isinstance(load, LoadTable) else callable(load)
+    if varies and duration is None:
+        raise InputError("duration", "is missing", remedy="give it, as the load changes in time")
     table = LoadTable.of(load, 0.0 if duration is None else duration)
     if not weight.load.any():
         return table

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Integral
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +12,9 @@ from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.contacts.uniform_friction import UniformFriction
 from limitsurf.errors import InputError
 from limitsurf.motion.load_table import LoadLike
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_positive
 
-__all__ = ["Method", "Mode", "Options", "checked_drag", "positive"]
+__all__ = ["Method", "Mode", "Options", "checked_drag"]
 
 Array = NDArray[np.float64]
 Mode = Literal["inertial", "quasi-static"]
@@ -42,11 +41,10 @@ class Options:
         if self.method is not None:
             _choice("method", self.method, get_args(Method))
         _choice("mode", self.mode, get_args(Mode))
-        if not isinstance(self.frames, Integral) or self.frames < 1:
-            raise InputError("frames", "must be a whole number from 1 on", value=self.frames)
+        as_count("frames", self.frames)
         for name in ("time_step", "tolerance"):
             if getattr(self, name) is not None:
-                positive(name, getattr(self, name))
+                as_positive(name, getattr(self, name))
         if self.time_step is not None and self.method == "events":
             raise InputError("time_step", "is for steps", remedy="leave it out or use steps")
 
@@ -59,7 +57,7 @@ class Options:
 
 def checked_drag(given: ArrayLike, mode: Mode) -> Array:
     """Return viscous drag (3,), positive in quasi-static mode."""
-    drag = as_array("drag", given, 3)
+    drag = np.array(as_array("drag", given, 3))  # kernels are compiled anew for read-only arrays
     if (drag < 0.0).any():
         raise InputError("drag", "must be at least 0", value=tuple(drag.tolist()))
     if mode == "quasi-static" and not drag.all():
@@ -70,14 +68,6 @@ def checked_drag(given: ArrayLike, mode: Mode) -> Array:
             remedy="use mode='inertial' or give all three",
         )
     return drag
-
-
-def positive(name: str, value: Any) -> float:
-    """Return a positive number."""
-    number = as_number(name, value)
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(name, "must be positive", value=value)
-    return float(number)
 
 
 def _choice(name: str, value: str, known: tuple[str, ...]) -> None:

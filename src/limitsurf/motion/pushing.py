@@ -12,7 +12,7 @@ from limitsurf.errors import InputError
 from limitsurf.kernels.push import NODE, push_balance, push_path
 from limitsurf.motion.rigid_motion import to_world
 from limitsurf.motion.trajectory import EnergyBalance, Outcome, Trajectory
-from limitsurf.sets.arguments import as_array
+from limitsurf.sets.arguments import as_array, as_count
 from limitsurf.sets.contact_sum import ContactSum
 
 __all__ = ["Push", "push", "push_along"]
@@ -152,12 +152,10 @@ def push_along(
     if len(places) == 0:
         raise InputError("path", "is empty", remedy="give places of the pushed point")
     moments = _times(times, len(places))
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
-        raise InputError("steps", "must be a whole number from 1 on", value=steps)
     arm = np.array([*(places[0] - start[:2]), 0.0])
     r = to_world(arm, -start[2])[:2]
-    nodes = np.empty((len(places), NODE))
-    worst = push_path(*_levers(contacts, r), np.array(places), float(start[2]), steps, nodes)
+    count, nodes = as_count("steps", steps), np.empty((len(places), NODE))
+    worst = push_path(*_levers(contacts, r), np.array(places), float(start[2]), count, nodes)
     return _record(contacts, r, places, moments, nodes, worst)
 
 

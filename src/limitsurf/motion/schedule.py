@@ -10,10 +10,13 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_number
 
 __all__ = ["Schedule"]
 
 Drive = TypeVar("Drive")
+
+_MOST = 1e6  # pieces
 
 
 @dataclass(frozen=True)
@@ -45,14 +48,14 @@ class Schedule(Generic[Drive]):
     period: float | None = None
 
     def __init__(self, entries: Iterable[tuple[float, Drive]], period: float | None = None) -> None:
-        object.__setattr__(self, "entries", tuple((float(t), drive) for t, drive in entries))
-        object.__setattr__(self, "period", None if period is None else float(period))
+        object.__setattr__(self, "entries", _pairs(entries))
+        object.__setattr__(self, "period", None if period is None else as_number("period", period))
         times = [t for t, _ in self.entries]
         if not times:
             raise InputError("schedule", "has no entries", remedy="give pairs (time, drive)")
         if times[0] != 0.0 or not np.isfinite(times).all():
             raise InputError("schedule", "must start at 0 s with finite times", value=times)
-        for before, after in pairwise([*times, *([] if period is None else [float(period)])]):
+        for before, after in pairwise([*times, *([] if self.period is None else [self.period])]):
             if not before < after:
                 raise InputError(
                     "schedule",
@@ -62,32 +65,66 @@ class Schedule(Generic[Drive]):
 
     def at(self, time: float) -> Drive:
         """Return the drive at a time [s]."""
-        return self.pieces(time, instant=True)[-1][2]
+        t = _checked("time", time)
+        cycle = self._cycle(t)
+        return [drive for begin, drive in self.entries if self._shift(cycle) + begin <= t][-1]
 
-    def pieces(self, duration: float, *, instant: bool = False) -> list[tuple[float, float, Drive]]:
-        """Return ``(begin, end, drive)`` up to a time [s]; with `instant` also what begins there.
+    def _shift(self, cycle: int) -> float:
+        return 0.0 if self.period is None else cycle * self.period
+
+    def _cycle(self, time: float) -> int:
+        """Return the period that a time lies in, by the rounded times at which they begin."""
+        if self.period is None:
+            return 0
+        cycle = int(time // self.period)
+        while self._shift(cycle) > time:
+            cycle -= 1
+        while self._shift(cycle + 1) <= time:
+            cycle += 1
+        return cycle
+
+    def pieces(self, duration: float) -> list[tuple[float, float, Drive]]:
+        """Return ``(begin, end, drive)`` up to a time [s].
+
+        Raises
+        ------
+        InputError
+            A time that is negative or not finite; more than a million pieces.
 
         Examples
         --------
         >>> Schedule([(0.0, "a"), (1.0, "b")]).pieces(1.0)
         [(0.0, 1.0, 'a')]
         """
-        found: list[tuple[float, float, Drive]] = []
-        cycle = 0
-        while True:
-            shift = 0.0 if self.period is None else cycle * self.period
-            ends = [shift + t for t, _ in self.entries[1:]]
-            ends.append(np.inf if self.period is None else shift + self.period)
-            for (t, drive), end in zip(self.entries, ends, strict=True):
-                begin = shift + t
-                if begin > duration or (begin == duration and not instant):
-                    return found
-                found.append((begin, min(end, duration), drive))
-            if self.period is None:
-                return found
-            cycle += 1
+        limit = _checked("duration", duration)
+        if self.period is not None and limit / self.period * len(self.entries) > _MOST:
+            raise InputError("period", "is too short", value=self.period, remedy="raise it")
+        begins = [
+            (self._shift(cycle) + t, drive)
+            for cycle in range(self._cycle(limit) + 1)
+            for t, drive in self.entries
+            if self._shift(cycle) + t < limit
+        ]
+        ends = [*(t for t, _ in begins), limit][1:]
+        return [(begin, end, drive) for (begin, drive), end in zip(begins, ends, strict=True)]
 
     def __repr__(self) -> str:
         """Return number of entries and the period."""
         again = "" if self.period is None else f", repeating every {self.period:g} s"
         return f"Schedule({len(self.entries)} entries{again})"
+
+
+def _pairs(entries: Iterable[tuple[float, Drive]]) -> tuple[tuple[float, Drive], ...]:
+    """Return the entries of a schedule, their times as numbers."""
+    try:
+        pairs = [(t, drive) for t, drive in entries]
+    except (TypeError, ValueError) as error:
+        raise InputError("schedule", "has no pairs", remedy="give pairs (time, drive)") from error
+    return tuple((as_number("schedule", t), drive) for t, drive in pairs)
+
+
+def _checked(name: str, time: float) -> float:
+    number = as_number(name, time)
+    if not (np.isfinite(number) and number >= 0.0):
+        raise InputError(name, "must be finite and at least 0 s", value=time)
+    return number

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from rich.progress import Progress
 
 from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.contacts.uniform_friction import UniformFriction
-from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.engines import Drive, engine_of
 from limitsurf.motion.load_table import LoadLike
+from limitsurf.motion.netcdf import as_target
 from limitsurf.motion.options import Method, Mode
 from limitsurf.motion.trajectory import Trajectory
+from limitsurf.sets.arguments import as_array
 
 __all__ = ["simulate"]
-
-Array = NDArray[np.float64]
 
 
 def simulate(
@@ -77,12 +75,12 @@ def simulate(
     tip : OscillatingContact, optional
         The motion of a tip, such as `ResonatorPixel.tip`. Then the tips have their full mean
         friction, which falls with the speed of the part, instead of what they exert at rest: a
-        hundred times slower.
+        hundred times slower, and not with a tolerance.
     friction : UniformFriction, optional
         Friction of the ground under the part in a force field.
     time_step : float, optional
         Step [s], the longest one with a tolerance; by default the part moves at most a tip width
-        in one.
+        in one, at the speed that it reaches from rest.
     tolerance : float, optional
         Local error of a step over the part's circumradius: steps adapt to it. On arrays about 1e-4
         is five times faster than the default, fixed steps. What it is for feet and fields, see
@@ -114,6 +112,8 @@ def simulate(
     >>> simulate(Part.from_file("paper_t"), drive, (0.0, 1e-3, 1.0)).outcome.name
     'REST'
     """
+    target = as_target(save)
+    start, speed = as_array("pose", pose, 3), as_array("twist", twist, 3)
     engine = engine_of(
         part,
         drive,
@@ -129,23 +129,15 @@ def simulate(
         tolerance=tolerance,
         frames=frames,
     )
-    start, speed = _vector("pose", pose), _vector("twist", twist)
     with Progress(disable=not progress) as bar:
         task = bar.add_task("Simulating", total=engine.duration)
 
         def watch(time: float, interrupted: Trajectory | None) -> None:
             bar.update(task, completed=time)
-            if interrupted is not None and save is not None:
-                interrupted.save(save)
+            if interrupted is not None and target is not None:
+                interrupted.save(target)
 
         trajectory = engine(start, speed, watch)
-    if save is not None:
-        trajectory.save(save)
+    if target is not None:
+        trajectory.save(target)
     return trajectory
-
-
-def _vector(name: str, value: ArrayLike) -> Array:
-    vector = np.array(value, dtype=np.float64)
-    if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise InputError(name, "must be three finite numbers", value=value)
-    return vector

@@ -15,9 +15,11 @@ from rich.progress import track
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.engines import Drive, engine_of
+from limitsurf.motion.netcdf import as_target, write_netcdf
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.starts import read_starts
 from limitsurf.motion.trajectory import Outcome, Trajectory
+from limitsurf.sets.arguments import as_array, as_count
 
 if TYPE_CHECKING:
     import xarray
@@ -70,7 +72,7 @@ class Runs:
 
     def replay(self, run: int, *, frames: int = 200) -> Trajectory:
         """Simulate one run again and return its trajectory."""
-        if not 0 <= run < len(self):
+        if not as_count("run", run, 0) < len(self):
             raise InputError("run", f"must lie in 0..{len(self) - 1}", value=run)
         return simulate(self.part, self.drive, self.starts[run], frames=frames, **self.options)
 
@@ -101,6 +103,7 @@ def simulate_many(
     poses: ArrayLike | int,
     duration: float | None = None,
     *,
+    twist: ArrayLike = (0.0, 0.0, 0.0),
     seed: int = 0,
     start_offset: float | None = None,
     progress: bool = False,
@@ -112,7 +115,7 @@ def simulate_many(
 
     Parameters
     ----------
-    part, drive, duration, **options
+    part, drive, duration, twist, **options
         As `simulate` takes them, but frames and pose.
     poses : (n, 3) float or int
         Starts [m, m, rad]; or a number of random ones, with uniform orientations and centres
@@ -124,7 +127,7 @@ def simulate_many(
     progress : bool
         Show a progress bar.
     jobs : int
-        Threads; -1 takes all cores.
+        Threads, from 1 on; -1 takes all cores.
     save : path, optional
         NetCDF file for the runs. It is written every half minute, too, and when the user
         interrupts: then it holds the runs until there.
@@ -137,12 +140,12 @@ def simulate_many(
     >>> simulate_many(Part.from_file("paper_t"), drive, 20, tolerance=1e-4)
     Runs(20: 20 at rest)
     """
-    starts = read_starts(poses, part, seed, start_offset)
     engine = engine_of(part, drive, duration, frames=1, **options)
-    kept = {"duration": duration, **options}
-    zero = np.zeros(3)
-    motions = Parallel(n_jobs=jobs, prefer="threads", return_as="generator")(
-        delayed(engine)(start, zero) for start in starts
+    starts, speed = read_starts(poses, part, seed, start_offset), as_array("twist", twist, 3)
+    target, kept = as_target(save), {"duration": duration, "twist": speed, **options}
+    threads = -1 if type(jobs) is int and jobs == -1 else as_count("jobs", jobs)
+    motions = Parallel(n_jobs=threads, prefer="threads", return_as="generator")(
+        delayed(engine)(start, speed) for start in starts
     )
     shown = track(motions, "Simulating", total=len(starts)) if progress else motions
     ends: list[Trajectory] = []
@@ -150,12 +153,12 @@ def simulate_many(
     try:
         for trajectory in shown:
             ends.append(trajectory)
-            if save is not None and time.monotonic() - saved > _SAVE_EVERY:
-                _save(_runs(part, drive, kept, starts, ends), save)
+            if target is not None and time.monotonic() - saved > _SAVE_EVERY:
+                write_netcdf(_runs(part, drive, kept, starts, ends).to_dataset(), target)
                 saved = time.monotonic()
     finally:
-        if save is not None and ends:
-            _save(_runs(part, drive, kept, starts, ends), save)
+        if target is not None and ends:
+            write_netcdf(_runs(part, drive, kept, starts, ends).to_dataset(), target)
     return _runs(part, drive, kept, starts, ends)
 
 
@@ -173,11 +176,3 @@ def _runs(
         outcomes=np.array([end.outcome for end in ends], dtype=np.int64),
         worst_errors=np.array([end.worst_error for end in ends]),
     )
-
-
-def _save(runs: Runs, path: str | Path) -> None:
-    """Write a file as a whole: an interrupted write leaves the one before."""
-    path = Path(path)
-    unfinished = path.with_name(path.name + ".part")
-    runs.to_dataset().to_netcdf(unfinished, engine="scipy")
-    unfinished.replace(path)

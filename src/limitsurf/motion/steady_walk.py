@@ -74,7 +74,7 @@ class SteadyWalk:
         >>> walker.poses(np.pi).round(12)  # a quarter turn about (0, -2)
         array([ 2.        , -2.        , -1.57079633])
         """
-        moments = np.asarray(times, dtype=np.float64)
+        moments = as_array("times", times, *np.shape(times))
         return compose(as_array("start", start, 3), displacement(self.twist, moments))
 
     def __repr__(self) -> str:

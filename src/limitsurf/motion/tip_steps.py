@@ -78,6 +78,8 @@ class TipSteps:
 
     def __post_init__(self) -> None:
         """Check the tip."""
+        if not isinstance(self.tip, OscillatingContact):
+            raise InputError("tip", "is no OscillatingContact", value=self.tip)
         if self.tip.shape != ():
             raise InputError("tip", f"has shape {self.tip.shape}", remedy="give one tip")
 
@@ -122,7 +124,8 @@ class TipSteps:
         rests, load, bound = False, np.zeros(3), 0.0
         if dt > 0.0:
             rests, load, bound = self._solve(tips, motion, dt)
-        if show or rests or before[TIME] >= motion[NEXT_FRAME] - 1e-9 * self.step:
+        due = dt > 0.0 and before[TIME] >= motion[NEXT_FRAME] - 1e-9 * self.step
+        if show or rests or due:
             count = len(tips.position)
             rows.append(_frame(before, motion, load, bound, count, self.body))
             motion[NEXT_FRAME] = self.every * (np.floor(before[TIME] / self.every + 1e-9) + 1.0)
@@ -133,7 +136,7 @@ class TipSteps:
     ) -> TipDissipation | None:
         """Return the tips that carry the part, None if they cannot."""
         sites.move(motion[POSE : POSE + 3])
-        running = activation.active[tuple(sites.sites.T)]
+        running = activation.running[tuple(sites.sites.T)]
         position = sites.positions[running]
         ground = ground_of(activation)
         normal = self.body.weight / len(position) if len(position) else np.inf

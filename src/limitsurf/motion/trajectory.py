@@ -13,6 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 from limitsurf.errors import InputError
 from limitsurf.kernels.slide_step import LEFT_ARRAY, NOT_LIFTED, REST, TIME_LIMIT
+from limitsurf.motion.netcdf import as_target, write_netcdf
 from limitsurf.sets.arguments import as_array
 
 if TYPE_CHECKING:
@@ -223,10 +224,8 @@ class Trajectory:
 
     def save(self, path: str | Path) -> None:
         """Write the record to a NetCDF file, as a whole: a broken write leaves the one before."""
-        path = Path(path)
-        unfinished = path.with_name(path.name + ".part")
-        self.to_dataset().to_netcdf(unfinished, engine="scipy")
-        unfinished.replace(path)
+        if (target := as_target(path)) is not None:
+            write_netcdf(self.to_dataset(), target)
 
     def __repr__(self) -> str:
         """Return duration and outcome."""

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.contacts.contact_set import ContactSet
-from limitsurf.errors import InputError
 from limitsurf.motion.rigid_motion import to_world
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.steady_walk import SteadyWalk, steady_walk
@@ -17,7 +16,7 @@ from limitsurf.motion.trajectory import (
     Outcome,
     Trajectory,
 )
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_positive
 
 __all__ = ["walk"]
 
@@ -75,16 +74,14 @@ def walk(
     >>> walk(gait, 2 * np.pi, drag=(1.0, 1.0, 2.0)).final_pose.round(12)
     array([ 4., -4.,  0.])
     """
-    limit = _duration(duration)
-    if isinstance(frames, bool) or not isinstance(frames, int) or frames < 1:
-        raise InputError("frames", "must be a whole number from 1 on", value=frames)
+    limit, count = as_positive("duration", duration), as_count("frames", frames)
     gait = contacts if isinstance(contacts, Schedule) else Schedule([(0.0, contacts)])
     phases = [(t, steady_walk(feet, drag, load)) for t, feet in gait.entries]
     plan = Schedule(phases, gait.period)
     rest = _rest_time(plan)
     end, rests = min(limit, rest), rest <= limit
     pieces = plan.pieces(end)
-    rows = _rows(pieces, plan.at(end), as_array("pose", pose, 3), end, frames)
+    rows = _rows(pieces, plan.at(end), as_array("pose", pose, 3), end, count)
     zero = np.zeros(len(rows))
     return Trajectory(
         times=rows[:, 0],
@@ -98,13 +95,6 @@ def walk(
         energy=EnergyBalance(zero, rows[:, 12], rows[:, 13], rows[:, 14], zero),
         events=tuple(_events(pieces, end if rests else None)),
     )
-
-
-def _duration(duration: float) -> float:
-    limit = as_number("duration", duration)
-    if not (np.isfinite(limit) and limit > 0.0):
-        raise InputError("duration", "must be positive", value=duration)
-    return limit
 
 
 def _rest_time(plan: Schedule[SteadyWalk]) -> float:

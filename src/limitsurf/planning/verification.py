@@ -21,6 +21,7 @@ from limitsurf.motion.starts import check_room, random_starts
 from limitsurf.motion.time_scales import check_lift
 from limitsurf.motion.trajectory import Outcome, Trajectory
 from limitsurf.planning.alignment import AlignmentPlan
+from limitsurf.sets.arguments import as_count, as_positive
 
 if TYPE_CHECKING:
     import xarray
@@ -209,12 +210,9 @@ def verify_alignment(
     >>> verify_alignment(plan_alignment(part), part, load_array("resonator64"), samples=10)
     Verification(10 of 10 runs aligned, 95 % interval 72.2 to 100.0 %)
     """
-    if samples <= 0:
-        raise InputError("samples", "must be at least 1", value=samples)
-    if seed < 0:
-        raise InputError("seed", "must be at least 0", value=seed)
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
-        raise InputError("tolerance", "must be positive", value=tolerance)
+    as_count("samples", samples)
+    as_count("seed", seed, 0)
+    as_positive("tolerance", tolerance)
     check_lift(part, drive)
     offset = 0.5 * part.circumradius if start_offset is None else start_offset
     check_room(part, drive, offset)

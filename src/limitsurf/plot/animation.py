@@ -14,6 +14,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.trajectory import Trajectory
 from limitsurf.plot.scene import Box, Feet, Outline, Path, Piece, Tips, reach_of
+from limitsurf.sets.arguments import as_count, as_positive
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -68,11 +69,10 @@ def animate(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    if isinstance(frames, bool) or not isinstance(frames, int) or frames < 1:
-        raise InputError("frames", "must be a whole number from 1 on", value=frames)
-    if not (np.isfinite(seconds) and seconds > 0.0):
-        raise InputError("seconds", "must be positive", value=seconds)
-    times = np.linspace(0.0, trajectory.duration, frames if trajectory.duration > 0.0 else 1)
+    if not isinstance(trajectory, Trajectory):
+        raise InputError("trajectory", "is no Trajectory", value=trajectory)
+    count, time = as_count("frames", frames), as_positive("seconds", seconds)
+    times = np.linspace(0.0, trajectory.duration, count if trajectory.duration > 0.0 else 1)
     poses = np.column_stack([np.interp(times, trajectory.times, q) for q in trajectory.poses.T])
     figure = Figure(figsize=(6.0, 5.4), layout="constrained")
     FigureCanvasAgg(figure)  # no window, and nothing for pyplot to keep
@@ -86,7 +86,7 @@ def animate(
         return [axes]
 
     return FuncAnimation(
-        figure, show, frames=len(times), init_func=lambda: [axes], interval=1e3 * seconds / frames
+        figure, show, frames=len(times), init_func=lambda: [axes], interval=1e3 * time / count
     )
 
 

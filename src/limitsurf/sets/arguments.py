@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,15 +15,19 @@ from limitsurf.errors import InputError
 __all__ = [
     "Metric",
     "as_array",
+    "as_count",
     "as_number",
     "as_points",
+    "as_positive",
     "as_rows",
     "check_effort",
     "lifted",
     "read_metric",
+    "writable",
 ]
 
 Array = NDArray[np.float64]
+T = TypeVar("T", bound=np.generic)
 
 
 def as_array(name: str, value: ArrayLike, *shape: int | None, copy: bool = True) -> Array:
@@ -66,6 +70,22 @@ def as_number(name: str, value: Any) -> float:
     raise InputError(name, "is no number", value=value, remedy="give one in SI units")
 
 
+def as_positive(name: str, value: Any) -> float:
+    """Return a positive, finite number as a float; InputError for anything else."""
+    number = as_number(name, value)
+    if not (np.isfinite(number) and number > 0.0):
+        raise InputError(name, "must be positive", value=value)
+    return number
+
+
+def as_count(name: str, value: Any, least: int = 1) -> int:
+    """Return a whole number from `least` on as an int; InputError for anything else."""
+    whole = type(value) is int or (isinstance(value, Integral) and not isinstance(value, bool))
+    if not whole or value < least:
+        raise InputError(name, f"must be a whole number from {least} on", value=value)
+    return int(value)
+
+
 def as_points(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ...]]:
     """Return finite points (..., dim) as rows (k, dim), with the leading shape."""
     rows, shape = as_rows(name, value, dim)
@@ -82,18 +102,20 @@ def as_rows(name: str, value: ArrayLike, dim: int) -> tuple[Array, tuple[int, ..
         raise InputError(name, "is no array of numbers", remedy="check its entries") from error
     if points.ndim == 0 or points.shape[-1] != dim:
         raise InputError(name, f"has shape {points.shape}, not (..., {dim})")
-    rows = points.reshape(-1, dim)
-    flags = rows.flags  # kernels are compiled anew for read-only arrays and for gaps
-    ready = flags.writeable and flags.c_contiguous
-    return rows if ready else np.array(rows, order="C"), points.shape[:-1]
+    return writable(points.reshape(-1, dim)), points.shape[:-1]
+
+
+def writable(array: NDArray[T]) -> NDArray[T]:
+    """Return an array, or a copy without gaps: kernels are compiled anew for other layouts."""
+    ready = array.flags.writeable and array.flags.c_contiguous
+    return array if ready else np.array(array, order="C")
 
 
 def check_effort(tol: float, threads: int) -> None:
     """Check a relative tolerance and a number of threads."""
     if not 0.0 < tol < 1.0:
         raise InputError("tol", "must lie between 0 and 1", value=tol)
-    if (type(threads) is not int and not isinstance(threads, Integral)) or threads < 1:
-        raise InputError("threads", "must be a whole number from 1 on", value=threads)
+    as_count("threads", threads)
 
 
 @dataclass(frozen=True, eq=False)
