@@ -55,7 +55,9 @@ if TYPE_CHECKING:
     from limitsurf.contacts.wheel import Wheel as Wheel
     from limitsurf.geometry.part import Part as Part
     from limitsurf.motion.drag import air_film_drag as air_film_drag
+    from limitsurf.motion.feet import feet_motion as feet_motion
     from limitsurf.motion.field_motion import field_motion as field_motion
+    from limitsurf.motion.load_table import LoadTable as LoadTable
     from limitsurf.motion.pushing import Push as Push
     from limitsurf.motion.pushing import push as push
     from limitsurf.motion.pushing import push_along as push_along
@@ -110,6 +112,7 @@ _HOME = {
     "LatticeContacts": "contacts.lattice_contacts",
     "LinearImage": "sets.linear_image",
     "LoadShare": "contacts.load_sharing",
+    "LoadTable": "motion.load_table",
     "MinkowskiSum": "sets.minkowski_sum",
     "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
@@ -143,6 +146,7 @@ _HOME = {
     "direction_errors": "actuators.field_error",
     "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
+    "feet_motion": "motion.feet",
     "field_motion": "motion.field_motion",
     "force_scaling": "actuators.rim_force",
     "friction_load": "contacts.friction_load",
