@@ -168,7 +168,7 @@ def test_bad_input_is_one_line_and_leaves_nothing(tmp_path, capsys, name):
         ("unknown key", ["bad_actuators.toml", "fric", "known here|is missing"]),
         ("array too small", ["resonator32", "larger array"]),
         ("too heavy", ["10 V", "16.7 V would lift it"]),
-        ("no samples", ["samples", "at least 1"]),
+        ("no samples", ["samples", "whole number from 1 on"]),
         ("margin", ["min_margin", "33.67 deg is reachable"]),
         ("no density", ["areal_density"]),
     ],
