@@ -1,0 +1,247 @@
+"""Which tips carry a part after an event: those inside, those kept on the outline."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from limitsurf.motion.border import Border, BorderTip, Rates, border_at, free_tips, settle
+from limitsurf.motion.border_events import BorderCut
+from limitsurf.motion.event_record import Record
+from limitsurf.motion.event_state import Carriers, State, scaled_rates
+from limitsurf.motion.tip_balance import Balance, contact_velocities
+from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.trajectory import EventKind
+
+__all__ = ["Regrouping"]
+
+Array = NDArray[np.float64]
+
+#: Bounces about a border that are lower than this, relative to the pitch, are over: less than an
+#: atom for the pitches of micro-machined arrays.
+_BOUNCE = 1e-6
+
+#: Slower than this, relative to the speed of the drive, a contact may stick.
+_STICK = 1e-6
+
+
+class Regrouping:
+    """Regroups the tips at events, and writes these to a record."""
+
+    def __init__(self, scene: Scene, record: Record) -> None:
+        self._scene, self._record = scene, record
+
+    def first(self, state: State, inside: NDArray[np.bool_], tips: list[BorderTip]) -> Carriers:
+        """Return the carriers at the start; tips on the outline begin with half a share."""
+        inside[[tip.tip for tip in tips]] = False
+        carriers = Carriers(inside, [], np.zeros(0), np.zeros(0, dtype=np.int64))
+        return self._regroup(state, carriers, tips, np.full(len(tips), 0.5), quiet=True)
+
+    def crossing(self, state: State, carriers: Carriers, touching: list[BorderTip]) -> Carriers:
+        """Return the carriers after tips have come to the outline."""
+        start = carriers.inside[[tip.tip for tip in touching]].astype(np.float64)
+        shares = np.concatenate([carriers.shares, start])
+        return self._regroup(state, carriers, carriers.border + touching, shares)
+
+    def border_event(self, state: State, carriers: Carriers, cut: BorderCut) -> Carriers:
+        """Return the carriers after an event of those on the outline."""
+        tips, shares = list(carriers.border), np.clip(carriers.shares, 0.0, 1.0)
+        if cut.kind == "slip":
+            self._record.event(state.time, EventKind.SLIP, carriers.pivot)
+            carriers.pivot = -1
+            return carriers
+        if cut.kind == "start":
+            self._record.event(state.time, EventKind.SLIP)
+            return carriers
+        if cut.kind == "corner":
+            tips[cut.index] = self._at_corner(state, tips[cut.index])
+        if cut.kind == "drift":
+            return self._released(state, carriers, cut.index)
+        return self._regroup(state, carriers, tips, shares)
+
+    def step(self, state: State, carriers: Carriers) -> Carriers:
+        """Return the carriers after a step without event: contacts may have come to rest."""
+        scene = self._scene
+        self._project(state, carriers)
+        if not scene.inertial or scene.grip == 0.0 or not state.twist.any():
+            return carriers
+        if scene.rim_speed(state.twist) <= _STICK * scene.speed:
+            return self._stop(state, carriers)
+        return self._pivot(state, carriers)
+
+    def _at_corner(self, state: State, tip: BorderTip) -> BorderTip:
+        scene, edge = self._scene, tip.edges[0]
+        along = border_at(scene, state.pose, state.twist, [tip]).along[0, 0]
+        if along > 0.5 * scene.lengths[edge]:
+            return BorderTip(tip.tip, (edge, int(scene.following[edge])))
+        return BorderTip(tip.tip, (int(np.flatnonzero(scene.following == edge)[0]), edge))
+
+    def _released(self, state: State, carriers: Carriers, index: int) -> Carriers:
+        """Let go of a tip that was on the outline by chance: it goes where its rate leads."""
+        tip = carriers.border[index]
+        self._record.event(state.time, EventKind.RELEASE, tip.tip)
+        inside = carriers.inside.copy()
+        inside[tip.tip] = carriers.shares[index] >= 0.5
+        keep = [k for k in range(len(carriers.border)) if k != index]
+        border, shares = [carriers.border[k] for k in keep], carriers.shares[keep]
+        return self._regroup(state, Carriers(inside, border, shares, carriers.free), border, shares)
+
+    def _regroup(
+        self,
+        state: State,
+        old: Carriers,
+        tips: list[BorderTip],
+        start: Array,
+        *,
+        quiet: bool = False,
+    ) -> Carriers:
+        """Return the carriers with new shares of the tips on the outline."""
+        inside = old.inside.copy()
+        inside[[tip.tip for tip in tips]] = False
+        if self._scene.inertial:
+            shares = self._with_mass(state, inside, old, tips, start)
+        else:
+            shares = settle(self._rates(state, inside, tips)[0], start)
+        held = {tip.tip for tip in old.border}
+        for tip, share in zip(tips, shares, strict=True):
+            inside[tip.tip] = share >= 1.0
+            self._tell(state.time, tip.tip, share, old, held, quiet)
+        kept = np.flatnonzero((shares > 0.0) & (shares < 1.0))
+        border = [tips[k] for k in kept]
+        rates, geometry, balance = self._rates(state, inside, border)
+        edges = self._edges(border, geometry, balance, shares[kept])
+        free = free_tips(rates, shares[kept], np.arange(len(kept)))
+        new = Carriers(inside, edges, shares[kept], free, old.pivot)
+        self._project(state, new)
+        return new
+
+    def _rates(
+        self, state: State, inside: NDArray[np.bool_], tips: list[BorderTip]
+    ) -> tuple[Rates, Border, Balance]:
+        where = np.array([tip.tip for tip in tips], dtype=np.int64)
+        inner = np.flatnonzero(inside)
+        at = Balance(self._scene, state.pose, state.twist, state.time, inner, where)
+        border = border_at(self._scene, state.pose, state.twist, tips)
+        return scaled_rates(at, border), border, at
+
+    def _with_mass(
+        self,
+        state: State,
+        inside: NDArray[np.bool_],
+        old: Carriers,
+        tips: list[BorderTip],
+        start: Array,
+    ) -> Array:
+        """Return shares for a part with mass: its velocity decides, but for bounces that are over.
+
+        A tip that the part moves in or out of with g' = w comes back after a height
+        ``w^2 / (2 |g''|)``.
+        """
+        scene, held = self._scene, {tip.tip for tip in old.border}
+        border = border_at(scene, state.pose, state.twist, tips)
+        still = Border(border.gaps, border.along, border.rows, 0 * border.bias, border.convex)
+        w = still.rates(state.twist)
+        noise = 1e-12 * scene.speed
+        slowest = 2.0 * np.sqrt(2.0 * _BOUNCE * scene.pitch * scene.force / scene.mass[0])
+        new = np.array([tip.tip not in held or tip.corner for tip in tips], dtype=np.bool_)
+        goes = np.where(w > 0.0, 1.0, 0.0)
+        slow = ~new | (np.abs(w) <= slowest)
+        start = np.where(new & (np.abs(w) > noise), goes, start)
+        while True:
+            shares = np.where(slow, start, goes)
+            among = inside.copy()
+            among[[tip.tip for tip, share, s in zip(tips, shares, slow, strict=True) if not s and share]] = True
+            which = np.flatnonzero(slow)
+            rates, _, at = self._rates(state, among, [tips[k] for k in which])
+            shares[which] = settle(rates, start[which])
+            wrong = [
+                k
+                for j, k in enumerate(which)
+                if new[k] and abs(w[k]) > noise and not self._over(rates, at, shares[which], j, w[k])
+            ]
+            if not wrong:
+                return shares
+            slow[wrong] = False
+
+    def _over(self, rates: Rates, at: Balance, shares: Array, j: int, w: float) -> bool:
+        """Return whether tip j stays where its share says, though it comes with g' = w."""
+        if not 0.0 < shares[j] < 1.0:
+            return bool((w > 0.0) == (shares[j] == 1.0))
+        back = np.inf
+        for end, sign in ((0.0, 1.0), (1.0, -1.0)):
+            s = shares.copy()
+            s[j] = end
+            carried = at.carried(s)
+            if carried > 0.0:
+                back = min(back, sign * float(rates(s)[j]) / carried)
+        return bool(back > 0.0 and w * w <= 2.0 * back * _BOUNCE * self._scene.pitch)
+
+    def _tell(
+        self, time: float, tip: int, share: float, old: Carriers, held: set[int], quiet: bool
+    ) -> None:
+        """Record what became of a tip on the outline."""
+        kept = 0.0 < share < 1.0
+        if kept != (tip in held):
+            self._record.event(time, EventKind.CAPTURE if kept else EventKind.RELEASE, tip)
+        elif not kept and not quiet and old.inside[tip] != (share >= 1.0):
+            self._record.event(time, EventKind.ENTER if share >= 1.0 else EventKind.LEAVE, tip)
+
+    def _edges(
+        self, tips: list[BorderTip], border: Border, at: Balance, shares: Array
+    ) -> list[BorderTip]:
+        """Return the tips with the edge of two at a corner that they move along."""
+        both = border.bias - border.rows @ at.answer(shares).rate
+        which = np.where(border.convex, both.argmin(axis=1), both.argmax(axis=1))
+        edges = [tip.edges[k] for tip, k in zip(tips, which, strict=True)]
+        return [BorderTip(tip.tip, (e, e)) for tip, e in zip(tips, edges, strict=True)]
+
+    def _project(self, state: State, carriers: Carriers) -> None:
+        """Take away the velocity with which a part with mass would leave tips that it keeps."""
+        scene = self._scene
+        tips = [carriers.border[k] for k in carriers.free]
+        if not state.twist.any() or (not tips and carriers.pivot < 0):
+            return
+        rows = border_at(scene, state.pose, state.twist, tips).rows[:, 0]
+        if carriers.pivot >= 0:
+            x, y = scene.points[carriers.pivot] - state.pose[:2]
+            rows = np.vstack([rows, [1.0, 0.0, -y], [0.0, 1.0, x]])
+        root = np.sqrt(scene.mass)
+        scaled, units = root * state.twist, rows / root
+        units = units / np.linalg.norm(units, axis=1)[:, None]
+        change, _, rank, _ = np.linalg.lstsq(units, units @ scaled, rcond=1e-9)
+        self._slow_down(state, (scaled - change) / root if rank < 3 else np.zeros(3))
+
+    def _slow_down(self, state: State, twist: Array) -> None:
+        mass = self._scene.mass
+        state.numerical += 0.5 * float(state.twist @ (mass * state.twist) - twist @ (mass * twist))
+        state.twist = twist
+
+    def _stop(self, state: State, carriers: Carriers) -> Carriers:
+        """Stop the part if friction, and shares on the outline, hold it."""
+        still = State(state.time, state.pose, np.zeros(3))
+        rates, _, at = self._rates(still, carriers.inside, carriers.border)
+        shares = settle(rates, carriers.shares)
+        if not at.answer(shares).sticks:
+            return carriers
+        self._slow_down(state, still.twist)
+        self._record.event(state.time, EventKind.STICK)
+        carriers.pivot = -1
+        return self._regroup(state, carriers, carriers.border, shares)
+
+    def _pivot(self, state: State, carriers: Carriers) -> Carriers:
+        """Let the slowest contact stick if its friction suffices to turn the part about it."""
+        scene, inner = self._scene, np.flatnonzero(carriers.inside)
+        border = np.array([tip.tip for tip in carriers.border], dtype=np.int64)
+        tips = np.concatenate([inner, border])
+        u = contact_velocities(scene.points[tips] - state.pose[:2], state.twist)
+        speeds = np.hypot(u[:, 0], u[:, 1])
+        slowest = int(np.argmin(speeds))
+        if carriers.pivot >= 0 or speeds[slowest] > _STICK * scene.speed:
+            return carriers
+        pivot = int(tips[slowest])
+        at = Balance(scene, state.pose, state.twist, state.time, inner, border, pivot)
+        if at.answer(carriers.shares).needed <= 1.0:
+            carriers.pivot = pivot
+            self._record.event(state.time, EventKind.STICK, pivot)
+            self._project(state, carriers)
+        return carriers
