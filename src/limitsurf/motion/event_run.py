@@ -13,7 +13,7 @@ from limitsurf.kernels.outline_crossings import Arc, first_crossing, first_exit,
 from limitsurf.motion.border import BorderTip
 from limitsurf.motion.border_events import BorderCut, first_border_cut, snapped
 from limitsurf.motion.event_record import Record
-from limitsurf.motion.event_state import Carriers, Path, State, Stretch, View, integrate
+from limitsurf.motion.event_state import Carriers, Path, State, Steps, Stretch, View, integrate
 from limitsurf.motion.regroup import Regrouping
 from limitsurf.motion.tip_scene import Scene
 from limitsurf.motion.trajectory import EventKind, Outcome
@@ -23,6 +23,7 @@ __all__ = ["EventRun"]
 
 Array = NDArray[np.float64]
 
+_STIFF = 100.0  # changes of velocity by friction in a step, from which it is stiff
 _BALANCED = 1e-9  # of the drive's force: what may be left at rest
 
 
@@ -125,9 +126,9 @@ class EventRun:
     def _advance(self, stretch: Stretch, view: View) -> bool:
         """Move to the next event, or by a step; return whether the part leaves the array."""
         state, scene = self._state, self._scene
-        path = integrate(
-            stretch, state.time, self._limit, self._first, self._longest(view), self._tolerance
-        )
+        longest = self._longest(view)
+        steps = Steps(self._first, longest, view.fading * longest > _STIFF)
+        path = integrate(stretch, state.time, self._limit, steps, self._tolerance)
         self._first = 5.0 * path.length
         cut = self._cut(stretch, path, view)
         if cut.tau < 1.0:

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import DOP853
+from scipy.integrate import DOP853, Radau
 
 from limitsurf.errors import SolveFailed
 from limitsurf.motion.border import Border, BorderTip, Rates, border_at, solve_free
 from limitsurf.motion.tip_balance import Answer, Balance
 from limitsurf.motion.tip_scene import Scene
 
-__all__ = ["Carriers", "Path", "State", "Stretch", "View", "integrate", "scaled_rates"]
+__all__ = ["Carriers", "Path", "State", "Steps", "Stretch", "View", "integrate", "scaled_rates"]
 
 Array = NDArray[np.float64]
 
@@ -50,12 +50,16 @@ class Carriers:
 
 
 class View(NamedTuple):
-    """A state seen in full: shares, geometry of the border, loads and rates."""
+    """A state seen in full: shares, geometry of the border, loads and rates.
+
+    `fading` is the rate [1/s] at which friction on slow contacts changes velocities.
+    """
 
     shares: Array
     border: Border
     answer: Answer
     normal: float
+    fading: float
 
 
 class Stretch:
@@ -78,7 +82,7 @@ class Stretch:
             rates = scaled_rates(at, border)
             self._shares = solve_free(rates, self._shares, self._all, self._free)
         answer = at.answer(self._shares)
-        return View(self._shares, border, answer, at.normal(self._shares))
+        return View(self._shares, border, answer, at.normal(self._shares), at.fading)
 
     def split(self, y: Array) -> tuple[Array, Array, Array]:
         """Return pose, twist and energies of displacements y from the start."""
@@ -96,6 +100,14 @@ class Stretch:
         powers = [work, answer.friction, float(v @ (scene.drag * v))]
         rate = answer.rate if scene.inertial else v[:0]
         return np.concatenate([v, rate, powers])
+
+
+class Steps(NamedTuple):
+    """The first step to try, the longest allowed, and whether the equations are stiff."""
+
+    first: float
+    longest: float
+    stiff: bool
 
 
 def scaled_rates(at: Balance, border: Border) -> Rates:
@@ -116,16 +128,21 @@ class Path(NamedTuple):
 
 
 def integrate(
-    stretch: Stretch, begin: float, end: float, first: float, longest: float, tolerance: Array
+    stretch: Stretch, begin: float, end: float, steps: Steps, tolerance: Array
 ) -> Path:
-    """Return one step of DOP853 (E. Hairer, S. Norsett, G. Wanner, 1993) with its polynomial."""
-    longest = min(longest, end - begin)
-    solver = DOP853(
+    """Return one step of a Runge-Kutta method with its polynomial.
+
+    DOP853, or Radau's where friction on slow contacts makes the equations stiff (E. Hairer,
+    G. Wanner, *Solving Ordinary Differential Equations* I and II, 1993 and 1996).
+    """
+    longest = min(steps.longest, end - begin)
+    method = Radau if steps.stiff else DOP853
+    solver = method(
         stretch.derivative,
         begin,
         np.zeros(len(tolerance)),
         end,
-        first_step=min(first, longest),
+        first_step=min(steps.first, longest),
         max_step=longest,
         rtol=_RELATIVE,
         atol=tolerance,

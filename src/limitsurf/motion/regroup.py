@@ -12,6 +12,7 @@ from limitsurf.motion.event_state import Carriers, State, scaled_rates
 from limitsurf.motion.tip_balance import Balance, contact_velocities
 from limitsurf.motion.tip_scene import Scene
 from limitsurf.motion.trajectory import EventKind
+from limitsurf.tolerances import REST_SPEED
 
 __all__ = ["Regrouping"]
 
@@ -23,6 +24,12 @@ _BOUNCE = 1e-6
 
 #: Slower than this, relative to the speed of the drive, a contact may stick.
 _STICK = 1e-6
+
+#: So much of its friction disk a contact may need to stick.
+_SURE = 0.99
+
+#: Slower than that, the part is stopped if friction can hold it.
+_STOP = REST_SPEED
 
 
 class Regrouping:
@@ -65,7 +72,7 @@ class Regrouping:
         self._project(state, carriers)
         if not scene.inertial or scene.grip == 0.0 or not state.twist.any():
             return carriers
-        if scene.rim_speed(state.twist) <= _STICK * scene.speed:
+        if scene.rim_speed(state.twist) <= _STOP * scene.speed:
             return self._stop(state, carriers)
         return self._pivot(state, carriers)
 
@@ -235,13 +242,17 @@ class Regrouping:
         tips = np.concatenate([inner, border])
         u = contact_velocities(scene.points[tips] - state.pose[:2], state.twist)
         speeds = np.hypot(u[:, 0], u[:, 1])
-        slowest = int(np.argmin(speeds))
-        if carriers.pivot >= 0 or speeds[slowest] > _STICK * scene.speed:
+        order = np.argsort(speeds)
+        slow = min(_STICK * scene.speed, 1e-2 * speeds[order[min(1, len(order) - 1)]])
+        if carriers.pivot >= 0 or not speeds[order[0]] < slow:
             return carriers
-        pivot = int(tips[slowest])
-        at = Balance(scene, state.pose, state.twist, state.time, inner, border, pivot)
-        if at.answer(carriers.shares).needed <= 1.0:
-            carriers.pivot = pivot
+        trial = State(state.time, state.pose, state.twist, numerical=state.numerical)
+        pivot = carriers.pivot = int(tips[order[0]])
+        self._project(trial, carriers)
+        at = Balance(scene, state.pose, trial.twist, state.time, inner, border, pivot)
+        if trial.twist.any() and at.answer(carriers.shares).needed <= _SURE:
             self._record.event(state.time, EventKind.STICK, pivot)
-            self._project(state, carriers)
+            state.twist, state.numerical = trial.twist, trial.numerical
+        else:
+            carriers.pivot = -1
         return carriers

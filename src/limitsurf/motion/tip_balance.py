@@ -106,6 +106,14 @@ class Balance:
         carried = self._inner + float(shares.sum())
         return self._scene.weight / carried if carried > 0.0 else np.inf
 
+    @property
+    def fading(self) -> float:
+        """Rate [1/s] at which friction of a sliding part changes its velocity."""
+        if not self._slides or self._scene.grip == 0.0 or not self._inner:
+            return 0.0
+        slowness = np.mean(1.0 / np.maximum(self._speeds, _FADE * self._scene.speed))
+        return float(self._scene.grip * self._scene.weight / self._scene.mass[0] * slowness)
+
     def carried(self, shares: Array) -> float:
         """Return the sum of the shares over the number of tips."""
         return (self._inner + float(shares.sum())) / max(self._inner + len(shares), 1)
