@@ -116,13 +116,17 @@ def settle(rates: Rates, start: Array) -> Array:
 
 
 def _settle_one(rates: Rates, start: Array) -> Array:
-    first, most = float(rates(start)[0]), float(np.abs(rates(1.0 - start)).max())
-    if abs(first) <= _ROUNDING * most:
+    def rate(s: float) -> float:
+        return float(rates(np.array([s]))[0])
+
+    first, ends = rate(start[0]), (rate(0.0), rate(1.0))
+    tol = _ROUNDING * max(abs(ends[0]), abs(ends[1]))
+    if abs(first) <= tol:
         return start
-    bound = 1.0 if first > 0.0 else 0.0
-    if bound == start[0] or float(rates(np.array([bound]))[0]) * first >= 0.0:
-        return np.array([bound])
-    root = brentq(lambda s: float(rates(np.array([s]))[0]), start[0], bound, xtol=1e-16, rtol=1e-15)
+    bound, sign = (1, 1.0) if first > 0.0 else (0, -1.0)
+    if sign * ends[bound] >= -tol:
+        return np.array([float(bound)])
+    root = brentq(rate, start[0], float(bound), xtol=1e-16, rtol=1e-15)
     return _snapped(np.array([root]))
 
 

@@ -222,5 +222,5 @@ def _sizes(scene: Scene) -> Array:
     """Return the sizes that errors of the integrator are measured by."""
     length, turn = scene.pitch, scene.pitch / scene.radius
     energy = scene.weight * scene.pitch
-    speeds = [scene.speed, scene.speed, scene.speed / scene.radius] if scene.inertial else []
+    speeds = [0.1 * scene.speed, 0.1 * scene.speed, 0.1 * scene.speed / scene.radius] if scene.inertial else []
     return np.array([length, length, turn, *speeds, *[energy] * 3])
