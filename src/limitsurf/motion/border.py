@@ -31,7 +31,9 @@ __all__ = ["Border", "BorderTip", "Rates", "border_at", "free_tips", "settle", "
 Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]
 
-_ROUNDING = 1e-11  # of rates, relative to the largest
+_ROUNDING = 1e-11  # of rates, relative to their size
+_EXACT = 1e-14  # the same where shares are solved for
+_FLAT = 1e-8  # slopes of rates, relative to their size
 _STEP = 1e-4  # of shares, for slopes
 _CLOSE = 1e-12  # shares this close to 0 or 1 are that
 _SWEEPS = 600
@@ -92,35 +94,37 @@ def border_at(scene: Scene, pose: Array, twist: Array, tips: list[BorderTip]) ->
     )
 
 
-def settle(rates: Rates, start: Array) -> Array:
-    """Return shares (k,) that meet the conditions, from where `start` leads."""
+def settle(rates: Rates, start: Array, size: float) -> Array:
+    """Return shares (k,) that meet the conditions, from where `start` leads.
+
+    `size` is what rates are measured by: 1e-11 of it is zero.
+    """
     if len(start) == 0:
         return start
     if len(start) == 1:
-        return _settle_one(rates, start)
-    A, first = _slopes(rates, start), rates(start)
-    scale = float(np.abs(A).max() + np.abs(first).max())
-    if scale == 0.0:
+        return _settle_one(rates, start, size)
+    if np.abs(rates(start)).max() <= _ROUNDING * size:
         return start
-    tol, pace = _ROUNDING * scale, 0.5 / np.abs(A).sum(axis=1).max(initial=1e-3 * scale)
+    steepest = np.abs(_slopes(rates, start)).sum(axis=1).max(initial=1e-3 * size)
+    pace = 0.5 / steepest
     s, before = start, np.full(len(start), -1)
     for sweep in range(_SWEEPS):
         pattern = np.where(s <= 0.0, 0, np.where(s >= 1.0, 1, 2))
         if np.array_equal(pattern, before) and sweep % 3 == 2:
-            found = _polished(rates, s, pattern == 2, tol)
+            found = _polished(rates, s, pattern == 2, size)
             if found is not None:
                 return found
         before = pattern
         s = np.clip(s + pace * rates(s), 0.0, 1.0)
-    return _by_cases(rates, start, tol)
+    return _by_cases(rates, start, size)
 
 
-def _settle_one(rates: Rates, start: Array) -> Array:
+def _settle_one(rates: Rates, start: Array, size: float) -> Array:
     def rate(s: float) -> float:
         return float(rates(np.array([s]))[0])
 
     first, ends = rate(start[0]), (rate(0.0), rate(1.0))
-    tol = _ROUNDING * max(abs(ends[0]), abs(ends[1]))
+    tol = _ROUNDING * size
     if abs(first) <= tol:
         return start
     bound, sign = (1, 1.0) if first > 0.0 else (0, -1.0)
@@ -130,7 +134,7 @@ def _settle_one(rates: Rates, start: Array) -> Array:
     return _snapped(np.array([root]))
 
 
-def _by_cases(rates: Rates, start: Array, tol: float) -> Array:
+def _by_cases(rates: Rates, start: Array, size: float) -> Array:
     """Try all patterns, those nearest to the start first."""
     if len(start) <= _FEW:
         ends = np.where(start < 0.5, 0, 1)
@@ -138,23 +142,25 @@ def _by_cases(rates: Rates, start: Array, tol: float) -> Array:
         patterns.sort(key=lambda p: int((p != ends).sum()))
         for pattern in patterns:
             s = np.where(pattern == 2, 0.5, pattern.astype(np.float64))
-            found = _polished(rates, s, pattern == 2, tol)
+            found = _polished(rates, s, pattern == 2, size)
             if found is not None:
                 return found
     raise SolveFailed(f"event_motion: no shares found for {len(start)} tips on the outline", start)
 
 
-def _polished(rates: Rates, s: Array, captured: NDArray[np.bool_], tol: float) -> Array | None:
+def _polished(
+    rates: Rates, s: Array, captured: NDArray[np.bool_], size: float
+) -> Array | None:
     """Return shares near s with the rates of the captured tips zero, if they meet the conditions."""
     which = np.flatnonzero(captured)
-    free = free_tips(rates, s, which)
-    found = solve_free(rates, s, which, free)
+    free = free_tips(rates, s, which, size)
+    found = solve_free(rates, s, which, free, size)
     if found.min() < -_CLOSE or found.max() > 1.0 + _CLOSE:
         return None
     found = _snapped(found)
     g = rates(found)
     wrong = np.where(found <= 0.0, g, np.where(found >= 1.0, -g, np.abs(g)))
-    return found if wrong.max() <= tol else None
+    return found if wrong.max() <= _ROUNDING * size else None
 
 
 def _snapped(s: Array) -> Array:
@@ -173,34 +179,38 @@ def _slopes(rates: Rates, s: Array, columns: NDArray[np.int64] | None = None) ->
     return A
 
 
-def free_tips(rates: Rates, s: Array, which: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return captured tips whose shares decide on the rates of all; others keep theirs."""
+def free_tips(
+    rates: Rates, s: Array, which: NDArray[np.int64], size: float
+) -> NDArray[np.int64]:
+    """Return captured tips whose shares decide on the rates of all; others keep theirs.
+
+    Those others move along with the former, or the part turns about them and their share is what
+    it was when that began.
+    """
     if len(which) == 0:
         return which
     A = _slopes(rates, s, which)[which]
-    scale = max(float(np.abs(A).max()), float(np.abs(rates(s)).max()))
     _, R, order = scipy.linalg.qr(A, pivoting=True, mode="economic")
-    rank = int((np.abs(np.diag(R)) > 1e-9 * scale).sum())
+    rank = int((np.abs(np.diag(R)) > _FLAT * size).sum())
     return np.sort(which[order[:rank]])
 
 
 def solve_free(
-    rates: Rates, s: Array, which: NDArray[np.int64], free: NDArray[np.int64]
+    rates: Rates, s: Array, which: NDArray[np.int64], free: NDArray[np.int64], size: float
 ) -> Array:
     """Return shares with the free ones changed by Newton's method until captured tips stay put."""
     if len(free) == 0:
         return s
-    g, least = rates(s)[which], np.inf
+    g = rates(s)[which]
     for _ in range(12):
-        size = float(np.abs(g).max())
-        if not size < 0.5 * least:
+        most = float(np.abs(g).max())
+        if most <= _EXACT * size:
             break
-        least, A = size, _slopes(rates, s, free)[which]
-        step = np.linalg.lstsq(A, -g, rcond=1e-13)[0]
+        step = np.linalg.lstsq(_slopes(rates, s, free)[which], -g, rcond=1e-13)[0]
         trial = s.copy()
         trial[free] += step
         after = rates(trial)[which]
-        if not np.abs(after).max() < size:
+        if not np.abs(after).max() < 0.5 * most:
             break
         s, g = trial, after
     return s

@@ -15,11 +15,11 @@ from limitsurf.motion.tip_scene import Scene
 __all__ = ["BorderCut", "first_border_cut", "snapped"]
 
 Array = NDArray[np.float64]
-Kind = Literal["corner", "share", "slip", "start", "drift"]
+Kind = Literal["corner", "share", "slip", "start", "loose"]
 
 _LOOKS = 4  # along a path
 _SHARE = 1e-10  # beyond its bounds
-_DRIFT = 1e-7  # of the pitch
+_LOOSE = 1e-9  # rates of tips that stay by themselves, relative to their size
 
 
 class BorderCut(NamedTuple):
@@ -83,10 +83,11 @@ class _Margins:
         pose, twist, _ = self._stretch.split(path.at(tau))
         view = self._stretch.look(path.begin + tau * path.length, pose, twist)
         along, shares = view.border.along[:, 0], view.shares[carriers.free]
-        drift = _DRIFT * self._scene.pitch - np.abs(view.border.gaps[self._frozen, 0])
+        rates = view.border.rates(view.answer.rate)[self._frozen]
+        loose = _LOOSE - np.abs(rates) / max(self._scene.rate_size, 1e-300)
         still = -1.0 if self._stuck and not view.answer.sticks else 1.0
         slip = 1.0 - view.answer.needed
-        parts = [along, self._lengths - along, shares, 1.0 - shares, drift, [slip, still]]
+        parts = [along, self._lengths - along, shares, 1.0 - shares, loose, [slip, still]]
         return np.concatenate(parts)
 
     def meaning(self, j: int) -> tuple[Kind, int]:
@@ -97,13 +98,11 @@ class _Margins:
         if j < 2 * (k + f):
             return "share", int(self._carriers.free[(j - 2 * k) % f])
         if j < len(self.slack) - 2:
-            return "drift", int(self._frozen[j - 2 * (k + f)])
+            return "loose", int(self._frozen[j - 2 * (k + f)])
         return ("slip" if j == len(self.slack) - 2 else "start"), -1
 
     def root(self, j: int, low: float, high: float, before: float) -> float:
         """Return where margin j becomes negative."""
-        if self.meaning(j)[0] == "drift":
-            return 0.0  # it was never held there
         if not before > 0.0:
             return low
         return float(brentq(lambda tau: self.at(tau)[j], low, high, xtol=1e-15, rtol=1e-15))

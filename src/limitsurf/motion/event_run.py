@@ -66,7 +66,7 @@ class EventRun:
         self._state = State(0.0, pose, twist)
         self.record, self.normal = Record(scene), 0.0
         self._tolerance = tolerance * _sizes(scene)
-        self._first = interval
+        self._first, self._cuts = interval, 0
         if not scene.on_array(pose):
             raise InputError("pose", "puts the part over the edge of the array", value=tuple(pose))
         self._groups = Regrouping(scene, self.record)
@@ -83,7 +83,7 @@ class EventRun:
             self._frame(state, view, outcome)
             if outcome is not None:
                 return outcome
-            if len(self.record.events) >= max_events:
+            if self._cuts >= max_events:
                 raise TooManyEvents(max_events, state.time)
             if self._advance(stretch, view):
                 self.record.event(self._state.time, EventKind.EDGE)
@@ -132,6 +132,7 @@ class EventRun:
         self._first = 5.0 * path.length
         cut = self._cut(stretch, path, view)
         if cut.tau < 1.0:
+            self._cuts += 1
             self._first = max(path.length, 2.0 * cut.tau * path.length)
         self._frames_until(stretch, path, cut.tau)
         y = path.at(cut.tau)

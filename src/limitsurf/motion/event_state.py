@@ -80,7 +80,9 @@ class Stretch:
         border = border_at(scene, pose, twist, self._border)
         if len(self._border):
             rates = scaled_rates(at, border)
-            self._shares = solve_free(rates, self._shares, self._all, self._free)
+            self._shares = solve_free(
+                rates, self._shares, self._all, self._free, scene.rate_size
+            )
         answer = at.answer(self._shares)
         return View(self._shares, border, answer, at.normal(self._shares), at.fading)
 

@@ -62,8 +62,6 @@ class Regrouping:
             return carriers
         if cut.kind == "corner":
             tips[cut.index] = self._at_corner(state, tips[cut.index])
-        if cut.kind == "drift":
-            return self._released(state, carriers, cut.index)
         return self._regroup(state, carriers, tips, shares)
 
     def step(self, state: State, carriers: Carriers) -> Carriers:
@@ -83,16 +81,6 @@ class Regrouping:
             return BorderTip(tip.tip, (edge, int(scene.following[edge])))
         return BorderTip(tip.tip, (int(np.flatnonzero(scene.following == edge)[0]), edge))
 
-    def _released(self, state: State, carriers: Carriers, index: int) -> Carriers:
-        """Let go of a tip that was on the outline by chance: it goes where its rate leads."""
-        tip = carriers.border[index]
-        self._record.event(state.time, EventKind.RELEASE, tip.tip)
-        inside = carriers.inside.copy()
-        inside[tip.tip] = carriers.shares[index] >= 0.5
-        keep = [k for k in range(len(carriers.border)) if k != index]
-        border, shares = [carriers.border[k] for k in keep], carriers.shares[keep]
-        return self._regroup(state, Carriers(inside, border, shares, carriers.free), border, shares)
-
     def _regroup(
         self,
         state: State,
@@ -108,7 +96,7 @@ class Regrouping:
         if self._scene.inertial:
             shares = self._with_mass(state, inside, old, tips, start)
         else:
-            shares = settle(self._rates(state, inside, tips)[0], start)
+            shares = settle(self._rates(state, inside, tips)[0], start, self._scene.rate_size)
         held = {tip.tip for tip in old.border}
         for tip, share in zip(tips, shares, strict=True):
             inside[tip.tip] = share >= 1.0
@@ -117,7 +105,7 @@ class Regrouping:
         border = [tips[k] for k in kept]
         rates, geometry, balance = self._rates(state, inside, border)
         edges = self._edges(border, geometry, balance, shares[kept])
-        free = free_tips(rates, shares[kept], np.arange(len(kept)))
+        free = free_tips(rates, shares[kept], np.arange(len(kept)), self._scene.rate_size)
         new = Carriers(inside, edges, shares[kept], free, old.pivot)
         self._project(state, new)
         return new
@@ -160,7 +148,7 @@ class Regrouping:
             among[[tip.tip for tip, share, s in zip(tips, shares, slow, strict=True) if not s and share]] = True
             which = np.flatnonzero(slow)
             rates, _, at = self._rates(state, among, [tips[k] for k in which])
-            shares[which] = settle(rates, start[which])
+            shares[which] = settle(rates, start[which], scene.rate_size)
             wrong = [
                 k
                 for j, k in enumerate(which)
@@ -227,7 +215,7 @@ class Regrouping:
         """Stop the part if friction, and shares on the outline, hold it."""
         still = State(state.time, state.pose, np.zeros(3))
         rates, _, at = self._rates(still, carriers.inside, carriers.border)
-        shares = settle(rates, carriers.shares)
+        shares = settle(rates, carriers.shares, self._scene.rate_size)
         if not at.answer(shares).sticks:
             return carriers
         self._slow_down(state, still.twist)

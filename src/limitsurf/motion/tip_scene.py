@@ -106,6 +106,11 @@ class Scene:
         fall = np.sqrt(2 * self.force * self.radius / self.mass[0])
         return float(min(np.divide(self.force, self.drag[0]) if self.drag[0] else np.inf, fall))
 
+    @property
+    def rate_size(self) -> float:
+        """Size of speeds, or of accelerations of a part with mass, that the drive gives."""
+        return self.force / float(self.mass[0]) if self.inertial else self.speed
+
     def rim_speed(self, twist: Array) -> float:
         """Return a bound on the speed of the part's points [m/s]."""
         return float(np.hypot(twist[0], twist[1]) + self.radius * abs(twist[2]))
