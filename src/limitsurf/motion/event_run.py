@@ -134,6 +134,11 @@ class EventRun:
         if cut.tau < 1.0:
             self._cuts += 1
             self._first = max(path.length, 2.0 * cut.tau * path.length)
+        wrong = self._unseen(stretch, path, cut.tau)
+        if wrong:
+            self._carriers = self._groups.flipped(state, self._carriers, wrong)
+            self._cuts += 1
+            return False
         self._frames_until(stretch, path, cut.tau)
         y = path.at(cut.tau)
         pose, twist, energy = stretch.split(y)
@@ -184,6 +189,20 @@ class EventRun:
             state = State(time, self._held(pose), twist, energy, self._state.numerical)
             self._frame(state, stretch.look(time, state.pose, twist), None)
 
+    def _unseen(self, stretch: Stretch, path: Path, tau: float) -> list[int]:
+        """Return tips that started on a corner and are on its other side now.
+
+        On a corner neither rates nor the sides of the two edges need tell where a tip goes.
+        """
+        tips = [tip.tip for tip in self._touching() if tip.corner]
+        if not tips or tau == 0.0:
+            return []
+        outline = self._scene.part.at(stretch.split(path.at(tau))[0])
+        places = shapely.points(self._scene.points[tips])
+        changed = shapely.contains(outline, places) != self._carriers.inside[tips]
+        away = shapely.distance(shapely.boundary(outline), places) > self._scene.near
+        return [tip for tip, wrong in zip(tips, changed & away, strict=True) if wrong]
+
     def _held(self, pose: Array, crossing: tuple[int, int] = (-1, -1)) -> Array:
         """Return the pose with the tips that stay on the outline put back on it."""
         tips = [self._carriers.border[k] for k in self._carriers.free]
@@ -222,6 +241,6 @@ class EventRun:
 def _sizes(scene: Scene) -> Array:
     """Return the sizes that errors of the integrator are measured by."""
     length, turn = scene.pitch, scene.pitch / scene.radius
-    energy = scene.weight * scene.pitch
+    energy = 0.01 * scene.force * scene.pitch
     speeds = [0.1 * scene.speed, 0.1 * scene.speed, 0.1 * scene.speed / scene.radius] if scene.inertial else []
     return np.array([length, length, turn, *speeds, *[energy] * 3])

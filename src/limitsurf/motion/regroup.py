@@ -64,6 +64,16 @@ class Regrouping:
             tips[cut.index] = self._at_corner(state, tips[cut.index])
         return self._regroup(state, carriers, tips, shares)
 
+    def flipped(self, state: State, carriers: Carriers, tips: list[int]) -> Carriers:
+        """Return the carriers after tips on corners have gone to the other side."""
+        inside = carriers.inside.copy()
+        for tip in tips:
+            inside[tip] = not inside[tip]
+            kind = EventKind.ENTER if inside[tip] else EventKind.LEAVE
+            self._record.event(state.time, kind, tip)
+        now = Carriers(inside, carriers.border, carriers.shares, carriers.free, carriers.pivot)
+        return self._regroup(state, now, carriers.border, carriers.shares)
+
     def step(self, state: State, carriers: Carriers) -> Carriers:
         """Return the carriers after a step without event: contacts may have come to rest."""
         scene = self._scene
@@ -136,40 +146,35 @@ class Regrouping:
         border = border_at(scene, state.pose, state.twist, tips)
         still = Border(border.gaps, border.along, border.rows, 0 * border.bias, border.convex)
         w = still.rates(state.twist)
-        noise = 1e-12 * scene.speed
-        slowest = 2.0 * np.sqrt(2.0 * _BOUNCE * scene.pitch * scene.force / scene.mass[0])
+        slowest = 2.0 * np.sqrt(2.0 * _BOUNCE * scene.pitch * scene.rate_size)
         new = np.array([tip.tip not in held or tip.corner for tip in tips], dtype=np.bool_)
+        moves = new & (np.abs(w) > 1e-12 * scene.speed)
         goes = np.where(w > 0.0, 1.0, 0.0)
         slow = ~new | (np.abs(w) <= slowest)
-        start = np.where(new & (np.abs(w) > noise), goes, start)
+        start = np.where(moves, goes, start)
         while True:
-            shares = np.where(slow, start, goes)
-            among = inside.copy()
-            among[[tip.tip for tip, share, s in zip(tips, shares, slow, strict=True) if not s and share]] = True
-            which = np.flatnonzero(slow)
+            shares, among, which = np.where(slow, start, goes), inside.copy(), np.flatnonzero(slow)
+            among[[tips[k].tip for k in np.flatnonzero(~slow & (goes > 0.0))]] = True
             rates, _, at = self._rates(state, among, [tips[k] for k in which])
             shares[which] = settle(rates, start[which], scene.rate_size)
-            wrong = [
-                k
-                for j, k in enumerate(which)
-                if new[k] and abs(w[k]) > noise and not self._over(rates, at, shares[which], j, w[k])
-            ]
-            if not wrong:
+            over = self._over(rates, at, shares[which], new[which], w[which])
+            wrong = which[moves[which] & ~over]
+            if not len(wrong):
                 return shares
             slow[wrong] = False
 
-    def _over(self, rates: Rates, at: Balance, shares: Array, j: int, w: float) -> bool:
-        """Return whether tip j stays where its share says, though it comes with g' = w."""
-        if not 0.0 < shares[j] < 1.0:
-            return bool((w > 0.0) == (shares[j] == 1.0))
-        back = np.inf
+    def _over(
+        self, rates: Rates, at: Balance, shares: Array, new: NDArray[np.bool_], w: Array
+    ) -> NDArray[np.bool_]:
+        """Return which tips stay where their share says, though they come with g' = w."""
+        back, g = np.full(len(w), np.inf), rates(shares)
         for end, sign in ((0.0, 1.0), (1.0, -1.0)):
-            s = shares.copy()
-            s[j] = end
-            carried = at.carried(s)
-            if carried > 0.0:
-                back = min(back, sign * float(rates(s)[j]) / carried)
-        return bool(back > 0.0 and w * w <= 2.0 * back * _BOUNCE * self._scene.pitch)
+            s = np.where(new, end, shares)
+            if at.carried(s) > 0.0:
+                back = np.minimum(back, sign * rates(s) / at.carried(s))
+        low = (back > 0.0) & (w * w <= 2.0 * back * _BOUNCE * self._scene.pitch)
+        stays = (shares > 0.0) & (shares < 1.0) | (np.abs(g) <= 1e-9 * self._scene.rate_size)
+        return np.where(stays, low, (w > 0.0) == (shares >= 1.0))
 
     def _tell(
         self, time: float, tip: int, share: float, old: Carriers, held: set[int], quiet: bool
