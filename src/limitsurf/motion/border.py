@@ -103,11 +103,10 @@ def settle(rates: Rates, start: Array, size: float) -> Array:
         return start
     if len(start) == 1:
         return _settle_one(rates, start, size)
-    if np.abs(rates(start)).max() <= _ROUNDING * size:
+    s, g, before = start, rates(start), np.full(len(start), -1)
+    if np.abs(g).max() <= _ROUNDING * size:
         return start
-    steepest = np.abs(_slopes(rates, start)).sum(axis=1).max(initial=1e-3 * size)
-    pace = 0.5 / steepest
-    s, before = start, np.full(len(start), -1)
+    pace = 0.1 / float(np.abs(g).max())
     for sweep in range(_SWEEPS):
         pattern = np.where(s <= 0.0, 0, np.where(s >= 1.0, 1, 2))
         if np.array_equal(pattern, before) and sweep % 3 == 2:
@@ -115,7 +114,11 @@ def settle(rates: Rates, start: Array, size: float) -> Array:
             if found is not None:
                 return found
         before = pattern
-        s = np.clip(s + pace * rates(s), 0.0, 1.0)
+        s = np.clip(s + pace * g, 0.0, 1.0)
+        g, last = rates(s), g
+        turn = float(g @ last) / max(float(np.linalg.norm(g) * np.linalg.norm(last)), 1e-300)
+        pace *= 1.3 if turn > 0.7 else (0.5 if turn < 0.0 else 0.9)
+        pace = min(pace, 0.25 / max(float(np.abs(g).max()), 1e-300))
     return _by_cases(rates, start, size)
 
 
