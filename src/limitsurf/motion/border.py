@@ -21,7 +21,7 @@ from itertools import product
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, lsq_linear
 
 from limitsurf.errors import SolveFailed
 from limitsurf.motion.tip_scene import Scene
@@ -36,7 +36,7 @@ _EXACT = 1e-14  # the same where shares are solved for
 _FLAT = 1e-8  # slopes of rates, relative to their size
 _STEP = 1e-4  # of shares, for slopes
 _CLOSE = 1e-12  # shares this close to 0 or 1 are that
-_SWEEPS = 600
+_SWEEPS, _PATIENCE = 600, 60
 _FEW = 5
 
 
@@ -106,11 +106,16 @@ def settle(rates: Rates, start: Array, size: float) -> Array:
     s, g, before = start, rates(start), np.full(len(start), -1)
     if np.abs(g).max() <= _ROUNDING * size:
         return start
-    pace = 0.1 / float(np.abs(g).max())
+    pace, due = 0.1 / float(np.abs(g).max()), 2
     for sweep in range(_SWEEPS):
         pattern = np.where(s <= 0.0, 0, np.where(s >= 1.0, 1, 2))
-        if np.array_equal(pattern, before) and sweep % 3 == 2:
+        if np.array_equal(pattern, before) and sweep >= due:
+            due = sweep + 3 + sweep // 4
             found = _polished(rates, s, pattern == 2, size)
+            if found is not None:
+                return found
+        if sweep == _PATIENCE:
+            found = _all_kept(rates, start, size)
             if found is not None:
                 return found
         before = pattern
@@ -137,6 +142,13 @@ def _settle_one(rates: Rates, start: Array, size: float) -> Array:
     return _snapped(np.array([root]))
 
 
+def _all_kept(rates: Rates, start: Array, size: float) -> Array | None:
+    """Return shares with which all tips stay on the outline, if the rates are linear in them."""
+    A = _slopes(rates, start)
+    found = lsq_linear(A / size, (A @ start - rates(start)) / size, bounds=(0.0, 1.0), tol=1e-15).x
+    return _accepted(rates, found, size)
+
+
 def _by_cases(rates: Rates, start: Array, size: float) -> Array:
     """Try all patterns, those nearest to the start first."""
     if len(start) <= _FEW:
@@ -158,6 +170,11 @@ def _polished(
     which = np.flatnonzero(captured)
     free = free_tips(rates, s, which, size)
     found = solve_free(rates, s, which, free, size)
+    return _accepted(rates, found, size)
+
+
+def _accepted(rates: Rates, found: Array, size: float) -> Array | None:
+    """Return shares if they meet the conditions."""
     if found.min() < -_CLOSE or found.max() > 1.0 + _CLOSE:
         return None
     found = _snapped(found)

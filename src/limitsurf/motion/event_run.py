@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from limitsurf.errors import InputError, TooManyEvents
 from limitsurf.kernels.outline_crossings import Arc, first_crossing, first_exit, points_on_outline
-from limitsurf.motion.border import BorderTip
+from limitsurf.motion.border import BorderTip, border_at
 from limitsurf.motion.border_events import BorderCut, first_border_cut, snapped
+from limitsurf.motion.bounces import BOUNCE
 from limitsurf.motion.event_record import Record
 from limitsurf.motion.event_state import Carriers, Path, State, Steps, Stretch, View, integrate
 from limitsurf.motion.regroup import Regrouping
@@ -134,9 +135,9 @@ class EventRun:
         if cut.tau < 1.0:
             self._cuts += 1
             self._first = max(path.length, 2.0 * cut.tau * path.length)
-        wrong = self._unseen(stretch, path, cut.tau)
+        wrong = self._unseen(stretch, path, cut)
         if wrong:
-            self._carriers = self._groups.flipped(state, self._carriers, wrong)
+            self._carriers = self._groups.turned(state, self._carriers, wrong)
             self._cuts += 1
             return False
         self._frames_until(stretch, path, cut.tau)
@@ -189,19 +190,20 @@ class EventRun:
             state = State(time, self._held(pose), twist, energy, self._state.numerical)
             self._frame(state, stretch.look(time, state.pose, twist), None)
 
-    def _unseen(self, stretch: Stretch, path: Path, tau: float) -> list[int]:
+    def _unseen(self, stretch: Stretch, path: Path, cut: Cut) -> list[BorderTip]:
         """Return tips that started on a corner and are on its other side now.
 
         On a corner neither rates nor the sides of the two edges need tell where a tip goes.
         """
-        tips = [tip.tip for tip in self._touching() if tip.corner]
-        if not tips or tau == 0.0:
+        corners = [t for t in self._touching() if t.corner and t.tip != cut.crossing[0]]
+        tips = [tip.tip for tip in corners]
+        if not tips or cut.tau == 0.0:
             return []
-        outline = self._scene.part.at(stretch.split(path.at(tau))[0])
+        outline = self._scene.part.at(stretch.split(path.at(cut.tau))[0])
         places = shapely.points(self._scene.points[tips])
         changed = shapely.contains(outline, places) != self._carriers.inside[tips]
         away = shapely.distance(shapely.boundary(outline), places) > self._scene.near
-        return [tip for tip, wrong in zip(tips, changed & away, strict=True) if wrong]
+        return [tip for tip, wrong in zip(corners, changed & away, strict=True) if wrong]
 
     def _held(self, pose: Array, crossing: tuple[int, int] = (-1, -1)) -> Array:
         """Return the pose with the tips that stay on the outline put back on it."""
@@ -214,7 +216,7 @@ class EventRun:
         if cut.border is not None:
             self._carriers = groups.border_event(state, carriers, cut.border)
         elif cut.crossing[0] >= 0:
-            self._carriers = groups.crossing(state, carriers, self._touching())
+            self._carriers = groups.crossing(state, carriers, self._touching(), self._close())
         else:
             self._carriers = groups.step(state, carriers)
 
@@ -224,13 +226,25 @@ class EventRun:
         outline = scene.part.at(self._state.pose)
         return np.asarray(shapely.contains_xy(outline, scene.points[:, 0], scene.points[:, 1]))
 
-    def _touching(self) -> list[BorderTip]:
+    def _close(self) -> list[BorderTip]:
+        """Return the tips that bounce lower than counts about edges of a part with mass."""
+        scene = self._scene
+        if not scene.inertial:
+            return []
+        slow = 2.0 * np.sqrt(2.0 * BOUNCE * scene.pitch * scene.rate_size)
+        found = self._touching(BOUNCE * scene.pitch)
+        rows = border_at(scene, self._state.pose, self._state.twist, found).rows
+        w = np.abs(rows @ self._state.twist).max(axis=1)
+        return [tip for tip, speed in zip(found, w, strict=True) if speed <= slow]
+
+    def _touching(self, near: float | None = None) -> list[BorderTip]:
         """Return the tips on the outline, but those held there."""
         scene = self._scene
         held = {tip.tip for tip in self._carriers.border}
         found = np.empty((4 * len(scene.points) + 4, 2), dtype=np.int32)
         pose = self._state.pose
-        count = points_on_outline(pose, scene.edges, scene.points, scene.near, found)
+        within = scene.near if near is None else near
+        count = points_on_outline(pose, scene.edges, scene.points, within, found)
         edges: dict[int, list[int]] = {}
         for tip, edge in found[:count]:
             if int(tip) not in held:

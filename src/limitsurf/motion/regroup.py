@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
+from limitsurf.errors import SolveFailed
 from limitsurf.motion.border import Border, BorderTip, Rates, border_at, free_tips, settle
-from limitsurf.motion.border_events import BorderCut
+from limitsurf.motion.border_events import BorderCut, snapped
+from limitsurf.motion.bounces import active_edges, settle_bounces
 from limitsurf.motion.event_record import Record
 from limitsurf.motion.event_state import Carriers, State, scaled_rates
 from limitsurf.motion.tip_balance import Balance, contact_velocities
@@ -17,10 +21,6 @@ from limitsurf.tolerances import REST_SPEED
 __all__ = ["Regrouping"]
 
 Array = NDArray[np.float64]
-
-#: Bounces about a border that are lower than this, relative to the pitch, are over: less than an
-#: atom for the pitches of micro-machined arrays.
-_BOUNCE = 1e-6
 
 #: Slower than this, relative to the speed of the drive, a contact may stick.
 _STICK = 1e-6
@@ -44,11 +44,41 @@ class Regrouping:
         carriers = Carriers(inside, [], np.zeros(0), np.zeros(0, dtype=np.int64))
         return self._regroup(state, carriers, tips, np.full(len(tips), 0.5), quiet=True)
 
-    def crossing(self, state: State, carriers: Carriers, touching: list[BorderTip]) -> Carriers:
-        """Return the carriers after tips have come to the outline."""
+    def crossing(
+        self, state: State, carriers: Carriers, touching: list[BorderTip], close: list[BorderTip]
+    ) -> Carriers:
+        """Return the carriers after tips have come to the outline.
+
+        Those that are as `close` as the last bounces are high stay there if all of them do.
+        """
+        held = {tip.tip for tip in carriers.border}
+        extra = [tip for tip in close if tip not in touching]
+        if extra:
+            kept = self._together(state, carriers, carriers.border + touching + extra)
+            if kept is not None:
+                return kept
         start = carriers.inside[[tip.tip for tip in touching]].astype(np.float64)
         shares = np.concatenate([carriers.shares, start])
         return self._regroup(state, carriers, carriers.border + touching, shares)
+
+    def _together(
+        self, state: State, carriers: Carriers, tips: list[BorderTip]
+    ) -> Carriers | None:
+        """Return the carriers if tips near the outline stay on it once they are put there."""
+        arrived = tips[len(carriers.border) :]
+        start = carriers.inside[[tip.tip for tip in arrived]].astype(np.float64)
+        shares = np.concatenate([carriers.shares, start])
+        pose = snapped(self._scene, state.pose, tips, (-1, -1))
+        trial = State(state.time, pose, state.twist, state.energy, state.numerical)
+        self._keep(trial, tips, -1)
+        try:
+            settled = self._settled(trial, carriers, tips, shares, {tip.tip for tip in tips})
+        except SolveFailed:
+            return None
+        if not settled[2].all():
+            return None
+        state.pose, state.twist, state.numerical = trial.pose, trial.twist, trial.numerical
+        return self._adopted(state, carriers, *settled[:2])
 
     def border_event(self, state: State, carriers: Carriers, cut: BorderCut) -> Carriers:
         """Return the carriers after an event of those on the outline."""
@@ -64,13 +94,22 @@ class Regrouping:
             tips[cut.index] = self._at_corner(state, tips[cut.index])
         return self._regroup(state, carriers, tips, shares)
 
-    def flipped(self, state: State, carriers: Carriers, tips: list[int]) -> Carriers:
-        """Return the carriers after tips on corners have gone to the other side."""
+    def turned(self, state: State, carriers: Carriers, corners: list[BorderTip]) -> Carriers:
+        """Return the carriers after tips on corners have gone to the other side.
+
+        Unless a part with mass keeps them on the outline, they do what they were seen to do.
+        """
+        if self._scene.inertial:
+            start = carriers.inside[[tip.tip for tip in corners]].astype(np.float64)
+            shares, held = np.concatenate([carriers.shares, start]), {t.tip for t in carriers.border}
+            settled = self._settled(state, carriers, carriers.border + corners, shares, held)
+            if settled[2][len(carriers.border) :].any():
+                return self._adopted(state, carriers, *settled[:2])
         inside = carriers.inside.copy()
-        for tip in tips:
-            inside[tip] = not inside[tip]
-            kind = EventKind.ENTER if inside[tip] else EventKind.LEAVE
-            self._record.event(state.time, kind, tip)
+        for tip in corners:
+            inside[tip.tip] = not inside[tip.tip]
+            kind = EventKind.ENTER if inside[tip.tip] else EventKind.LEAVE
+            self._record.event(state.time, kind, tip.tip)
         now = Carriers(inside, carriers.border, carriers.shares, carriers.free, carriers.pivot)
         return self._regroup(state, now, carriers.border, carriers.shares)
 
@@ -101,12 +140,35 @@ class Regrouping:
         quiet: bool = False,
     ) -> Carriers:
         """Return the carriers with new shares of the tips on the outline."""
-        inside = old.inside.copy()
+        held = {tip.tip for tip in old.border}
+        tips, shares, _ = self._settled(state, old, tips, start, held)
+        return self._adopted(state, old, tips, shares, quiet=quiet)
+
+    def _settled(
+        self, state: State, old: Carriers, tips: list[BorderTip], start: Array, held: set[int]
+    ) -> tuple[list[BorderTip], Array, NDArray[np.bool_]]:
+        """Return the tips, their shares, and which of them stay on the outline."""
+        scene, inside = self._scene, old.inside.copy()
         inside[[tip.tip for tip in tips]] = False
-        if self._scene.inertial:
-            shares = self._with_mass(state, inside, old, tips, start)
-        else:
-            shares = settle(self._rates(state, inside, tips)[0], start, self._scene.rate_size)
+        if not scene.inertial:
+            shares = settle(self._rates(state, inside, tips)[0], start, scene.rate_size)
+            return tips, shares, (shares > 0.0) & (shares < 1.0)
+        new = np.array([tip.tip not in held or tip.corner for tip in tips], dtype=np.bool_)
+        tips = active_edges(scene, state, tips)
+        rated = partial(self._rates, state)
+        return tips, *settle_bounces(scene, state, inside, tips, start, new, rated)
+
+    def _adopted(
+        self,
+        state: State,
+        old: Carriers,
+        tips: list[BorderTip],
+        shares: Array,
+        *,
+        quiet: bool = False,
+    ) -> Carriers:
+        """Return the carriers with these shares, and tell what changes."""
+        scene, inside = self._scene, old.inside.copy()
         held = {tip.tip for tip in old.border}
         for tip, share in zip(tips, shares, strict=True):
             inside[tip.tip] = share >= 1.0
@@ -115,8 +177,10 @@ class Regrouping:
         border = [tips[k] for k in kept]
         rates, geometry, balance = self._rates(state, inside, border)
         edges = self._edges(border, geometry, balance, shares[kept])
-        free = free_tips(rates, shares[kept], np.arange(len(kept)), self._scene.rate_size)
+        free = free_tips(rates, shares[kept], np.arange(len(kept)), scene.rate_size)
         new = Carriers(inside, edges, shares[kept], free, old.pivot)
+        if len(free):
+            state.pose = snapped(scene, state.pose, [edges[k] for k in free], (-1, -1))
         self._project(state, new)
         return new
 
@@ -124,57 +188,10 @@ class Regrouping:
         self, state: State, inside: NDArray[np.bool_], tips: list[BorderTip]
     ) -> tuple[Rates, Border, Balance]:
         where = np.array([tip.tip for tip in tips], dtype=np.int64)
-        inner = np.flatnonzero(inside)
+        inner = np.flatnonzero(inside & ~np.isin(np.arange(len(inside)), where))
         at = Balance(self._scene, state.pose, state.twist, state.time, inner, where)
         border = border_at(self._scene, state.pose, state.twist, tips)
         return scaled_rates(at, border), border, at
-
-    def _with_mass(
-        self,
-        state: State,
-        inside: NDArray[np.bool_],
-        old: Carriers,
-        tips: list[BorderTip],
-        start: Array,
-    ) -> Array:
-        """Return shares for a part with mass: its velocity decides, but for bounces that are over.
-
-        A tip that the part moves in or out of with g' = w comes back after a height
-        ``w^2 / (2 |g''|)``.
-        """
-        scene, held = self._scene, {tip.tip for tip in old.border}
-        border = border_at(scene, state.pose, state.twist, tips)
-        still = Border(border.gaps, border.along, border.rows, 0 * border.bias, border.convex)
-        w = still.rates(state.twist)
-        slowest = 2.0 * np.sqrt(2.0 * _BOUNCE * scene.pitch * scene.rate_size)
-        new = np.array([tip.tip not in held or tip.corner for tip in tips], dtype=np.bool_)
-        moves = new & (np.abs(w) > 1e-12 * scene.speed)
-        goes = np.where(w > 0.0, 1.0, 0.0)
-        slow = ~new | (np.abs(w) <= slowest)
-        start = np.where(moves, goes, start)
-        while True:
-            shares, among, which = np.where(slow, start, goes), inside.copy(), np.flatnonzero(slow)
-            among[[tips[k].tip for k in np.flatnonzero(~slow & (goes > 0.0))]] = True
-            rates, _, at = self._rates(state, among, [tips[k] for k in which])
-            shares[which] = settle(rates, start[which], scene.rate_size)
-            over = self._over(rates, at, shares[which], new[which], w[which])
-            wrong = which[moves[which] & ~over]
-            if not len(wrong):
-                return shares
-            slow[wrong] = False
-
-    def _over(
-        self, rates: Rates, at: Balance, shares: Array, new: NDArray[np.bool_], w: Array
-    ) -> NDArray[np.bool_]:
-        """Return which tips stay where their share says, though they come with g' = w."""
-        back, g = np.full(len(w), np.inf), rates(shares)
-        for end, sign in ((0.0, 1.0), (1.0, -1.0)):
-            s = np.where(new, end, shares)
-            if at.carried(s) > 0.0:
-                back = np.minimum(back, sign * rates(s) / at.carried(s))
-        low = (back > 0.0) & (w * w <= 2.0 * back * _BOUNCE * self._scene.pitch)
-        stays = (shares > 0.0) & (shares < 1.0) | (np.abs(g) <= 1e-9 * self._scene.rate_size)
-        return np.where(stays, low, (w > 0.0) == (shares >= 1.0))
 
     def _tell(
         self, time: float, tip: int, share: float, old: Carriers, held: set[int], quiet: bool
@@ -197,13 +214,17 @@ class Regrouping:
 
     def _project(self, state: State, carriers: Carriers) -> None:
         """Take away the velocity with which a part with mass would leave tips that it keeps."""
-        scene = self._scene
         tips = [carriers.border[k] for k in carriers.free]
-        if not state.twist.any() or (not tips and carriers.pivot < 0):
+        self._keep(state, tips, carriers.pivot)
+
+    def _keep(self, state: State, tips: list[BorderTip], pivot: int) -> None:
+        """Take away the velocity with which tips would leave the outline, and a pivot its place."""
+        scene = self._scene
+        if not state.twist.any() or (not tips and pivot < 0):
             return
         rows = border_at(scene, state.pose, state.twist, tips).rows[:, 0]
-        if carriers.pivot >= 0:
-            x, y = scene.points[carriers.pivot] - state.pose[:2]
+        if pivot >= 0:
+            x, y = scene.points[pivot] - state.pose[:2]
             rows = np.vstack([rows, [1.0, 0.0, -y], [0.0, 1.0, x]])
         root = np.sqrt(scene.mass)
         scaled, units = root * state.twist, rows / root
