@@ -37,6 +37,7 @@ _FLAT = 1e-8  # slopes of rates, relative to their size
 _STEP = 1e-4  # of shares, for slopes
 _CLOSE = 1e-12  # shares this close to 0 or 1 are that
 _SWEEPS, _PATIENCE = 600, 60
+_NEARBY = 0.1  # in shares: farther solutions are not those that the flow leads to
 _FEW = 5
 
 
@@ -112,7 +113,7 @@ def settle(rates: Rates, start: Array, size: float) -> Array:
         if np.array_equal(pattern, before) and sweep >= due:
             due = sweep + 3 + sweep // 4
             found = _polished(rates, s, pattern == 2, size)
-            if found is not None:
+            if found is not None and np.abs(found - s).max() <= _NEARBY:
                 return found
         if sweep == _PATIENCE:
             found = _all_kept(rates, start, size)
