@@ -93,8 +93,8 @@ class Balance:
             self._speeds = np.hypot(u[:, 0], u[:, 1])
             if pivot >= 0:
                 u[tips == pivot] = self._speeds[tips == pivot] = 0.0
-            fade = _FADE * scene.speed
-            forces = forces - scene.grip * u / np.sqrt(self._speeds**2 + fade**2)[:, None]
+            fade = max(_FADE * scene.speed, 1e-100)
+            forces = forces - scene.grip * u / np.hypot(self._speeds, fade)[:, None]
         rows = load_rows(arms, forces)
         self._own, self._rows = rows[: self._inner].sum(axis=0), rows[self._inner :]
         self._pivot = int(np.flatnonzero(tips == pivot)[0]) if pivot in tips else -1

@@ -95,10 +95,11 @@ class Scene:
 
     @cached_property
     def force(self) -> float:
-        """Size of the forces that drive the part at the start [N]."""
+        """Size of the forces on the part at the start [N]."""
         load = self.load(0.0)
         push = self.weight * np.hypot(self.forces[:, 0], self.forces[:, 1]).max(initial=0.0)
-        return float(push + np.hypot(load[0], load[1]) + abs(load[2]) / self.radius)
+        pull = np.hypot(load[0], load[1]) + abs(load[2]) / self.radius
+        return float(push + self.grip * self.weight + pull)
 
     @cached_property
     def speed(self) -> float:
