@@ -30,9 +30,7 @@ class Case:
     def run(self, **changes):
         settings = {"twist": self.twist, "mode": self.mode, "frames": 20} | changes
         drag = air_film_drag(self.part, self.drive.array)
-        return event_motion(
-            self.part, self.drive, self.pose, self.duration, drag=drag, **settings
-        )
+        return event_motion(self.part, self.drive, self.pose, self.duration, drag=drag, **settings)
 
     def steps(self, time_step):
         return simulate(
@@ -117,6 +115,8 @@ def distances(case, pose):
     points = np.array(array.first_site) + array.site_pitch * np.column_stack([columns, rows])
     outline = case.part.at(pose)
     gap = shapely.distance(shapely.boundary(outline), shapely.points(points))
-    return list(zip(rows.tolist(), columns.tolist(), strict=True)), shapely.contains_xy(
-        outline, points
-    ), gap
+    return (
+        list(zip(rows.tolist(), columns.tolist(), strict=True)),
+        shapely.contains_xy(outline, points),
+        gap,
+    )

@@ -91,9 +91,7 @@ def arc_pose(arc: Arc, tau: float) -> tuple[float, float, float]:
 
 
 @compiled
-def _point_in_part(
-    arc: Arc, tau: float, px: float, py: float
-) -> tuple[float, float, float, float]:
+def _point_in_part(arc: Arc, tau: float, px: float, py: float) -> tuple[float, float, float, float]:
     """Return where a point of the plane is in the frame of the part, and how it moves there."""
     x, vx = _along_arc(arc, tau, 0)
     y, vy = _along_arc(arc, tau, 1)
@@ -296,9 +294,7 @@ def first_exit(arc: Arc, edges: Floats, walls: Floats, near: float) -> float:
 
 
 @compiled
-def points_on_outline(
-    pose: Floats, edges: Floats, points: Floats, near: float, found: Ints
-) -> int:
+def points_on_outline(pose: Floats, edges: Floats, points: Floats, near: float, found: Ints) -> int:
     """List the points on the outline, up to `near`, with their edges; return how many pairs.
 
     `found` (K, 2) receives pairs ``point, edge``; pairs beyond its length are counted only.

@@ -164,9 +164,7 @@ def _by_cases(rates: Rates, start: Array, size: float) -> Array:
     raise SolveFailed(f"event_motion: no shares found for {len(start)} tips on the outline", start)
 
 
-def _polished(
-    rates: Rates, s: Array, captured: NDArray[np.bool_], size: float
-) -> Array | None:
+def _polished(rates: Rates, s: Array, captured: NDArray[np.bool_], size: float) -> Array | None:
     """Return shares near s with the rates of the captured tips zero, if they meet the conditions."""
     which = np.flatnonzero(captured)
     free = free_tips(rates, s, which, size)
@@ -200,9 +198,7 @@ def _slopes(rates: Rates, s: Array, columns: NDArray[np.int64] | None = None) ->
     return A
 
 
-def free_tips(
-    rates: Rates, s: Array, which: NDArray[np.int64], size: float
-) -> NDArray[np.int64]:
+def free_tips(rates: Rates, s: Array, which: NDArray[np.int64], size: float) -> NDArray[np.int64]:
     """Return captured tips whose shares decide on the rates of all; others keep theirs.
 
     Those others move along with the former, or the part turns about them and their share is what

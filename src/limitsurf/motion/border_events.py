@@ -19,6 +19,7 @@ Kind = Literal["corner", "share", "slip", "start", "loose"]
 
 _LOOKS = 4  # along a path
 _SHARE = 1e-10  # beyond its bounds
+_MOMENT = 1e-12  # of a path, after which a part that starts is seen to move
 _LOOSE = 1e-9  # rates of tips that stay by themselves, relative to their size
 
 
@@ -105,4 +106,9 @@ class _Margins:
         """Return where margin j becomes negative."""
         if not before > 0.0:
             return low
+        if self.meaning(j)[0] == "start":
+            while high - low > _MOMENT:
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if self.at(middle)[j] > 0.0 else (low, middle)
+            return high
         return float(brentq(lambda tau: self.at(tau)[j], low, high, xtol=1e-15, rtol=1e-15))

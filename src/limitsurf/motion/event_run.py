@@ -71,7 +71,9 @@ class EventRun:
         if not scene.on_array(pose):
             raise InputError("pose", "puts the part over the edge of the array", value=tuple(pose))
         self._groups = Regrouping(scene, self.record)
-        self._carriers = Carriers(np.zeros(0, dtype=np.bool_), [], np.zeros(0), np.zeros(0, dtype=np.int64))
+        self._carriers = Carriers(
+            np.zeros(0, dtype=np.bool_), [], np.zeros(0), np.zeros(0, dtype=np.int64)
+        )
         self._carriers = self._groups.first(self._state, self._under(), self._touching())
 
     def until_the_end(self, max_events: int) -> Outcome:
@@ -256,5 +258,9 @@ def _sizes(scene: Scene) -> Array:
     """Return the sizes that errors of the integrator are measured by."""
     length, turn = scene.pitch, scene.pitch / scene.radius
     energy = 0.01 * scene.force * scene.pitch
-    speeds = [0.1 * scene.speed, 0.1 * scene.speed, 0.1 * scene.speed / scene.radius] if scene.inertial else []
+    speeds = (
+        [0.1 * scene.speed, 0.1 * scene.speed, 0.1 * scene.speed / scene.radius]
+        if scene.inertial
+        else []
+    )
     return np.array([length, length, turn, *speeds, *[energy] * 3])

@@ -80,9 +80,7 @@ class Stretch:
         border = border_at(scene, pose, twist, self._border)
         if len(self._border):
             rates = scaled_rates(at, border)
-            self._shares = solve_free(
-                rates, self._shares, self._all, self._free, scene.rate_size
-            )
+            self._shares = solve_free(rates, self._shares, self._all, self._free, scene.rate_size)
         answer = at.answer(self._shares)
         return View(self._shares, border, answer, at.normal(self._shares), at.fading)
 
@@ -129,9 +127,7 @@ class Path(NamedTuple):
         return np.asarray(tau ** np.arange(1, 8) @ self.powers)
 
 
-def integrate(
-    stretch: Stretch, begin: float, end: float, steps: Steps, tolerance: Array
-) -> Path:
+def integrate(stretch: Stretch, begin: float, end: float, steps: Steps, tolerance: Array) -> Path:
     """Return one step of a Runge-Kutta method with its polynomial.
 
     DOP853, or Radau's where friction on slow contacts makes the equations stiff (E. Hairer,

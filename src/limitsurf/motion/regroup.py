@@ -61,9 +61,7 @@ class Regrouping:
         shares = np.concatenate([carriers.shares, start])
         return self._regroup(state, carriers, carriers.border + touching, shares)
 
-    def _together(
-        self, state: State, carriers: Carriers, tips: list[BorderTip]
-    ) -> Carriers | None:
+    def _together(self, state: State, carriers: Carriers, tips: list[BorderTip]) -> Carriers | None:
         """Return the carriers if tips near the outline stay on it once they are put there."""
         arrived = tips[len(carriers.border) :]
         start = carriers.inside[[tip.tip for tip in arrived]].astype(np.float64)
@@ -101,7 +99,10 @@ class Regrouping:
         """
         if self._scene.inertial:
             start = carriers.inside[[tip.tip for tip in corners]].astype(np.float64)
-            shares, held = np.concatenate([carriers.shares, start]), {t.tip for t in carriers.border}
+            shares, held = (
+                np.concatenate([carriers.shares, start]),
+                {t.tip for t in carriers.border},
+            )
             settled = self._settled(state, carriers, carriers.border + corners, shares, held)
             if settled[2][len(carriers.border) :].any():
                 return self._adopted(state, carriers, *settled[:2])
