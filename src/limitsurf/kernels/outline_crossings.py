@@ -1,147 +1,46 @@
 r"""When points of the plane cross the outline of a moving part, exactly, and none is missed.
 
-The pose moves along polynomials :math:`q(\tau)`, :math:`0 \le \tau \le 1`. In the frame of the part a
-point p of the plane lies at :math:`b = R^T (p - c)`; its signed distance to the line of an edge is
-:math:`d = n \cdot (b - a)`, positive on the part's side. With bounds V, A on the first two derivatives
-of c, and :math:`\Omega, \Gamma` on those of the angle,
+The pose moves along polynomials :math:`q(\tau)`, :math:`0 \le \tau \le 1`. In the frame of the part
+a point p of the plane lies at :math:`b = R^T (p - c)`; its signed distance to the line of an edge
+is :math:`d = n \cdot (b - a)`, positive on the part's side. With bounds V, A on the first two
+derivatives of c, and :math:`\Omega, \Gamma` on those of the angle,
 
 .. math:: |b'| \le V + \Omega |b|, \qquad
           |b''| \le A + 2 \Omega V + (\Gamma + \Omega^2) |b| =: K .
 
 On an interval of half width r about its middle there is no crossing if
-:math:`|d| > |d'| r + K r^2 / 2`, and at most one if :math:`|d'| > K r`; other intervals are halved. The
-corners of the part and the walls of the array are the same problem in the frame of the array.
+:math:`|d| > |d'| r + K r^2 / 2`, and at most one if :math:`|d'| > K r`; other intervals are halved.
+The corners of the part and the walls of the array are the same problem in the frame of the array.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from limitsurf.kernels.compile import Bools, Floats, Ints, compiled
+from limitsurf.kernels.pose_arc import (
+    Arc,
+    Line,
+    arc_bounds,
+    arc_pose,
+    line_of,
+    point_in_part,
+    side_of,
+)
 
-__all__ = ["Arc", "arc_pose", "first_crossing", "first_exit", "points_on_outline"]
+__all__ = ["first_crossing", "first_exit", "points_on_outline"]
 
 _NARROW = 2.0**-44
-
-
-class Arc(NamedTuple):
-    """A pose ``start + sum powers[m] tau^(m + 1)``, (3,) and (P, 3)."""
-
-    start: Floats
-    powers: Floats
-
-
-class Bounds(NamedTuple):
-    """Bounds on the derivatives of an arc: of the centre's path, and of the angle."""
-
-    speed: float
-    acceleration: float
-    turn: float
-    spin: float
-
-
-class Line(NamedTuple):
-    """Edge line: unit normal n to the left, a point a, and the edge's length."""
-
-    nx: float
-    ny: float
-    ax: float
-    ay: float
-    length: float
-
-
-class Side(NamedTuple):
-    """Distance d to a line, place s along it, and their derivatives."""
-
-    d: float
-    s: float
-    dd: float
-    ds: float
-
-
-@compiled
-def _bounds(arc: Arc) -> Bounds:
-    speed = acceleration = turn = spin = 0.0
-    for m in range(arc.powers.shape[0]):
-        k, part = m + 1, math.hypot(arc.powers[m, 0], arc.powers[m, 1])
-        speed += k * part
-        acceleration += k * m * part
-        turn += k * abs(arc.powers[m, 2])
-        spin += k * m * abs(arc.powers[m, 2])
-    return Bounds(speed, acceleration, turn, spin)
-
-
-@compiled
-def _along_arc(arc: Arc, tau: float, k: int) -> tuple[float, float]:
-    """Return coordinate k of the pose and its derivative."""
-    value = slope = 0.0
-    for m in range(arc.powers.shape[0] - 1, -1, -1):
-        value = value * tau + arc.powers[m, k]
-        slope = slope * tau + (m + 1) * arc.powers[m, k]
-    return arc.start[k] + tau * value, slope
-
-
-@compiled
-def arc_pose(arc: Arc, tau: float) -> tuple[float, float, float]:
-    """Return the pose at tau."""
-    return _along_arc(arc, tau, 0)[0], _along_arc(arc, tau, 1)[0], _along_arc(arc, tau, 2)[0]
-
-
-@compiled
-def _point_in_part(arc: Arc, tau: float, px: float, py: float) -> tuple[float, float, float, float]:
-    """Return where a point of the plane is in the frame of the part, and how it moves there."""
-    x, vx = _along_arc(arc, tau, 0)
-    y, vy = _along_arc(arc, tau, 1)
-    theta, omega = _along_arc(arc, tau, 2)
-    cos, sin = math.cos(theta), math.sin(theta)
-    rx, ry = px - x, py - y
-    bx, by = cos * rx + sin * ry, cos * ry - sin * rx
-    return bx, by, omega * by - cos * vx - sin * vy, sin * vx - cos * vy - omega * bx
-
-
-@compiled
-def _corner_in_plane(
-    arc: Arc, tau: float, ax: float, ay: float
-) -> tuple[float, float, float, float]:
-    """Return where a point of the part is in the plane, and how it moves there."""
-    x, vx = _along_arc(arc, tau, 0)
-    y, vy = _along_arc(arc, tau, 1)
-    theta, omega = _along_arc(arc, tau, 2)
-    cos, sin = math.cos(theta), math.sin(theta)
-    rx, ry = cos * ax - sin * ay, sin * ax + cos * ay
-    return x + rx, y + ry, vx - omega * ry, vy + omega * rx
-
-
-@compiled
-def _side(arc: Arc, tau: float, x: float, y: float, line: Line, fixed: bool) -> Side:
-    """Return the side of a line of the part on which a point of the plane is, or of the walls."""
-    if fixed:
-        bx, by, ux, uy = _point_in_part(arc, tau, x, y)
-    else:
-        bx, by, ux, uy = _corner_in_plane(arc, tau, x, y)
-    bx, by = bx - line.ax, by - line.ay
-    nx, ny = line.nx, line.ny
-    return Side(nx * bx + ny * by, ny * bx - nx * by, nx * ux + ny * uy, ny * ux - nx * uy)
-
-
-@compiled
-def _line_of(edge: Floats) -> Line:
-    dx, dy = edge[2] - edge[0], edge[3] - edge[1]
-    length = math.hypot(dx, dy)
-    return Line(-dy / length, dx / length, edge[0], edge[1], length)
 
 
 @compiled
 def _root(
     arc: Arc, low: float, high: float, x: float, y: float, line: Line, fixed: bool, side: int
 ) -> float:
-    """Return where d leaves `side` in an interval in which it does once: Newton, kept by halving."""
+    """Return where d leaves `side` in an interval in which it does once: Newton and halving."""
     tau = 0.5 * (low + high)
     for _ in range(200):
-        at = _side(arc, tau, x, y, line, fixed)
+        at = side_of(arc, tau, x, y, line, fixed)
         if at.d * side > 0.0:
             low = tau
         else:
@@ -175,7 +74,7 @@ def _first_root(
     low, width, floor = 0.0, 1.0, 1e-3 * near
     while low < best:
         r = 0.5 * width
-        at = _side(arc, low + r, x, y, line, fixed)
+        at = side_of(arc, low + r, x, y, line, fixed)
         change = abs(at.dd) * r + 0.5 * curvature * r * r
         shift = abs(at.ds) * r + 0.5 * curvature * r * r
         beyond = at.s + shift < -near or at.s - shift > line.length + near
@@ -183,13 +82,13 @@ def _first_root(
         if change > floor and not (apart or beyond or monotone) and width > _NARROW:
             width = r
             continue
-        end = at.d if apart else _side(arc, low + width, x, y, line, fixed).d
+        end = at.d if apart else side_of(arc, low + width, x, y, line, fixed).d
         after = side if abs(end) <= near else (1 if end > 0.0 else -1)
         if side != 0 and after != side and not beyond:
             tau = low
-            if not apart and _side(arc, low, x, y, line, fixed).d * side > 0.0:
+            if not apart and side_of(arc, low, x, y, line, fixed).d * side > 0.0:
                 tau = _root(arc, low, low + width, x, y, line, fixed, side)
-            s = _side(arc, tau, x, y, line, fixed).s
+            s = side_of(arc, tau, x, y, line, fixed).s
             if -near <= s <= line.length + near:
                 return min(tau, best)
         side = after
@@ -212,7 +111,7 @@ def _far(bx: float, by: float, line: Line, reach: float) -> bool:
 @compiled
 def _start_side(arc: Arc, x: float, y: float, line: Line, known: int, near: float) -> int:
     """Return on which side of a line a point starts: `known` if it lies on the edge."""
-    at = _side(arc, 0.0, x, y, line, True)
+    at = side_of(arc, 0.0, x, y, line, True)
     if abs(at.d) > near:
         return 1 if at.d > 0.0 else -1
     if near < at.s < line.length - near:
@@ -244,7 +143,7 @@ def first_crossing(
     tau, point, edge
         ``(2, -1, -1)`` if there is none.
     """
-    bounds, best, which, where = _bounds(arc), 1.0, -1, -1
+    bounds, best, which, where = arc_bounds(arc), 1.0, -1, -1
     reach = 0.0
     for e in range(edges.shape[0]):
         reach = max(reach, math.hypot(edges[e, 0], edges[e, 1]))
@@ -257,9 +156,9 @@ def first_crossing(
         speed = bounds.speed + bounds.turn * far
         curvature = bounds.acceleration + 2.0 * bounds.turn * bounds.speed
         curvature += (bounds.spin + bounds.turn**2) * far
-        bx, by, _, _ = _point_in_part(arc, 0.5, px, py)
+        bx, by, _, _ = point_in_part(arc, 0.5, px, py)
         for e in range(edges.shape[0]):
-            line = _line_of(edges[e])
+            line = line_of(edges[e])
             if _far(bx, by, line, 0.5 * speed + near):
                 continue
             side = _start_side(arc, px, py, line, 1 if inside[i] else -1, near)
@@ -280,15 +179,15 @@ def first_exit(arc: Arc, edges: Floats, walls: Floats, near: float) -> float:
     walls : (W, 4) float
         Directed edges of the polygon, the inside on their left; all corners start inside.
     """
-    bounds, best = _bounds(arc), 1.0
+    bounds, best = arc_bounds(arc), 1.0
     for e in range(edges.shape[0]):
         ax, ay = edges[e, 0], edges[e, 1]
         arm = math.hypot(ax, ay)
         speed = bounds.speed + bounds.turn * arm
         curvature = bounds.acceleration + (bounds.spin + bounds.turn**2) * arm
         for w in range(walls.shape[0]):
-            line = _line_of(walls[w])
-            if _side(arc, 0.0, ax, ay, line, False).d <= speed + near:
+            line = line_of(walls[w])
+            if side_of(arc, 0.0, ax, ay, line, False).d <= speed + near:
                 best = _first_root(arc, ax, ay, line, False, 1, curvature, near, best)
     return best if best < 1.0 else 2.0
 
@@ -304,7 +203,7 @@ def points_on_outline(pose: Floats, edges: Floats, points: Floats, near: float, 
         rx, ry = points[i, 0] - pose[0], points[i, 1] - pose[1]
         bx, by = cos * rx + sin * ry, cos * ry - sin * rx
         for e in range(edges.shape[0]):
-            if not _far(bx, by, _line_of(edges[e]), near):
+            if not _far(bx, by, line_of(edges[e]), near):
                 if count < found.shape[0]:
                     found[count, 0], found[count, 1] = i, e
                 count += 1

@@ -1,15 +1,16 @@
 r"""Tips on the outline: how fast they go in or out, and which shares that leaves them.
 
-With n the normal to the inside and r the tip's place from the centre of mass, its distance g inside
-the outline changes by :math:`g' = -J v`, :math:`J = (n_x, n_y, r \times n)`; at a corner g is the least of
-two distances where the part is convex, and the greatest where it is not. The shares solve
+With n the normal to the inside and r the tip's place from the centre of mass, its distance g
+inside the outline changes by :math:`g' = -J v`, :math:`J = (n_x, n_y, r \times n)`; at a corner g
+is the least of two distances where the part is convex, and the greatest where it is not. The
+shares solve
 
 .. math:: s_i = 0,\ g'_i \le 0 \quad\text{or}\quad s_i = 1,\ g'_i \ge 0
           \quad\text{or}\quad 0 < s_i < 1,\ g'_i = 0 ,
 
 which makes the part cross the border, slide along it, or rest there (A. F. Filippov,
-*Differential Equations with Discontinuous Righthand Sides*, 1988). Of several solutions it is the one to
-which tips of small width lead: :math:`\dot s = g'`, kept in [0, 1].
+*Differential Equations with Discontinuous Righthand Sides*, 1988). Of several solutions it is the
+one to which tips of small width lead: :math:`\dot s = g'`, kept in [0, 1].
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class Border:
     def rates(self, x: Array) -> Array:
         """Return g' (k,) of a twist, or g'' of an acceleration."""
         both = self.bias - self.rows @ x
-        return np.where(self.convex, both.min(axis=1), both.max(axis=1))
+        return np.asarray(np.where(self.convex, both.min(axis=1), both.max(axis=1)))
 
 
 def border_at(scene: Scene, pose: Array, twist: Array, tips: list[BorderTip]) -> Border:
@@ -165,7 +166,7 @@ def _by_cases(rates: Rates, start: Array, size: float) -> Array:
 
 
 def _polished(rates: Rates, s: Array, captured: NDArray[np.bool_], size: float) -> Array | None:
-    """Return shares near s with the rates of the captured tips zero, if they meet the conditions."""
+    """Return shares near s with captured tips that stay, if they meet the conditions."""
     which = np.flatnonzero(captured)
     free = free_tips(rates, s, which, size)
     found = solve_free(rates, s, which, free, size)

@@ -28,11 +28,11 @@ class BorderCut(NamedTuple):
 
     tau: float
     kind: Kind
-    index: int = -1
+    which: int = -1
 
 
 def snapped(scene: Scene, pose: Array, tips: list[BorderTip], crossing: tuple[int, int]) -> Array:
-    """Return the pose nearby at which tips lie on their edges, and one more on the edge it crosses."""
+    """Return the pose nearby at which tips lie on their edges, and one on the edge it crosses."""
     extra = [BorderTip(crossing[0], (crossing[1], crossing[1]))] if crossing[0] >= 0 else []
     metric = np.array([1.0, 1.0, 1.0 / scene.radius])
     for _ in range(3):
@@ -45,7 +45,7 @@ def snapped(scene: Scene, pose: Array, tips: list[BorderTip], crossing: tuple[in
 def first_border_cut(
     scene: Scene, stretch: Stretch, path: Path, carriers: Carriers, view: View, until: float
 ) -> BorderCut | None:
-    """Return the first event of the border tips, the pivot or a part that sticks, before `until`."""
+    """Return the first event of border tips, the pivot or a part that sticks, before `until`."""
     if not carriers.border and carriers.pivot < 0 and not view.answer.sticks:
         return None
     margins = _Margins(scene, stretch, path, carriers, view.answer.sticks)
@@ -54,7 +54,7 @@ def first_border_cut(
         after = margins.at(high)
         cuts = [
             BorderCut(margins.root(j, low, high, before[j]), *margins.meaning(j))
-            for j in np.flatnonzero(after < -margins.slack)
+            for j in np.flatnonzero(after < -margins.slack).tolist()
         ]
         if cuts:
             first = min(cuts, key=lambda cut: cut.tau)
@@ -88,8 +88,8 @@ class _Margins:
         loose = _LOOSE - np.abs(rates) / max(self._scene.rate_size, 1e-300)
         still = -1.0 if self._stuck and not view.answer.sticks else 1.0
         slip = 1.0 - view.answer.needed
-        parts = [along, self._lengths - along, shares, 1.0 - shares, loose, [slip, still]]
-        return np.concatenate(parts)
+        ends = np.array([slip, still])
+        return np.concatenate([along, self._lengths - along, shares, 1.0 - shares, loose, ends])
 
     def meaning(self, j: int) -> tuple[Kind, int]:
         """Return what margin j is about, and which tip on the outline."""

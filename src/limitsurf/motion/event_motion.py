@@ -34,11 +34,11 @@ def event_motion(
 ) -> Trajectory:
     r"""Return the motion of a part on an activated array, event by event.
 
-    The configuration space is cut into cells in which the same tips carry the part. Within a cell the
-    motion is smooth and integrated by DOP853; where a tip, taken as a point, comes under the outline
-    or leaves it, the instant is found to rounding. On the border of cells the part crosses, slides
-    along it, or rests, with the share of the tip that follows (``docs`` of `Border`). A part with
-    mass bounces about a border that it is pushed to from both sides; bounces lower than a
+    The configuration space is cut into cells in which the same tips carry the part. Within a cell
+    the motion is smooth and integrated by DOP853; where a tip, taken as a point, comes under the
+    outline or leaves it, the instant is found to rounding. On the border of cells the part crosses,
+    slides along it, or rests, with the share of the tip that follows (``motion/border.py``). A part
+    with mass bounces about a border that it is pushed to from both sides; bounces lower than a
     millionth of the pitch are taken to be over.
 
     Parameters

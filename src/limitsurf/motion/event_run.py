@@ -5,18 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from limitsurf.errors import InputError, TooManyEvents
-from limitsurf.kernels.outline_crossings import Arc, first_crossing, first_exit, points_on_outline
-from limitsurf.motion.border import BorderTip, border_at
+from limitsurf.kernels.outline_crossings import first_crossing, first_exit
+from limitsurf.kernels.pose_arc import Arc
 from limitsurf.motion.border_events import BorderCut, first_border_cut, snapped
-from limitsurf.motion.bounces import BOUNCE
 from limitsurf.motion.event_record import Record
-from limitsurf.motion.event_state import Carriers, Path, State, Steps, Stretch, View, integrate
+from limitsurf.motion.event_state import Path, State, Steps, Stretch, View, integrate
 from limitsurf.motion.regroup import Regrouping
 from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.touching import close_tips, gone_round, tips_under, touching_tips
 from limitsurf.motion.trajectory import EventKind, Outcome
 from limitsurf.tolerances import REST_SPEED
 
@@ -71,10 +70,8 @@ class EventRun:
         if not scene.on_array(pose):
             raise InputError("pose", "puts the part over the edge of the array", value=tuple(pose))
         self._groups = Regrouping(scene, self.record)
-        self._carriers = Carriers(
-            np.zeros(0, dtype=np.bool_), [], np.zeros(0), np.zeros(0, dtype=np.int64)
-        )
-        self._carriers = self._groups.first(self._state, self._under(), self._touching())
+        touching = touching_tips(scene, pose, [], scene.near)
+        self._carriers = self._groups.first(self._state, tips_under(scene, pose), touching)
 
     def until_the_end(self, max_events: int) -> Outcome:
         """Go on until the part rests, leaves, sinks or the time is up; return which."""
@@ -137,7 +134,10 @@ class EventRun:
         if cut.tau < 1.0:
             self._cuts += 1
             self._first = max(path.length, 2.0 * cut.tau * path.length)
-        wrong = self._unseen(stretch, path, cut)
+        touching = touching_tips(scene, state.pose, self._carriers.border, scene.near)
+        corners = [t for t in touching if t.corner and t.tip != cut.crossing[0] and cut.tau > 0.0]
+        after = stretch.split(path.at(cut.tau))[0]
+        wrong = gone_round(scene, corners, self._carriers, after)
         if wrong:
             self._carriers = self._groups.turned(state, self._carriers, wrong)
             self._cuts += 1
@@ -192,21 +192,6 @@ class EventRun:
             state = State(time, self._held(pose), twist, energy, self._state.numerical)
             self._frame(state, stretch.look(time, state.pose, twist), None)
 
-    def _unseen(self, stretch: Stretch, path: Path, cut: Cut) -> list[BorderTip]:
-        """Return tips that started on a corner and are on its other side now.
-
-        On a corner neither rates nor the sides of the two edges need tell where a tip goes.
-        """
-        corners = [t for t in self._touching() if t.corner and t.tip != cut.crossing[0]]
-        tips = [tip.tip for tip in corners]
-        if not tips or cut.tau == 0.0:
-            return []
-        outline = self._scene.part.at(stretch.split(path.at(cut.tau))[0])
-        places = shapely.points(self._scene.points[tips])
-        changed = shapely.contains(outline, places) != self._carriers.inside[tips]
-        away = shapely.distance(shapely.boundary(outline), places) > self._scene.near
-        return [tip for tip, wrong in zip(corners, changed & away, strict=True) if wrong]
-
     def _held(self, pose: Array, crossing: tuple[int, int] = (-1, -1)) -> Array:
         """Return the pose with the tips that stay on the outline put back on it."""
         tips = [self._carriers.border[k] for k in self._carriers.free]
@@ -218,49 +203,18 @@ class EventRun:
         if cut.border is not None:
             self._carriers = groups.border_event(state, carriers, cut.border)
         elif cut.crossing[0] >= 0:
-            self._carriers = groups.crossing(state, carriers, self._touching(), self._close())
+            scene, border = self._scene, carriers.border
+            touching = touching_tips(scene, state.pose, border, scene.near)
+            close = close_tips(scene, state, border)
+            self._carriers = groups.crossing(state, carriers, touching, close)
         else:
             self._carriers = groups.step(state, carriers)
-
-    def _under(self) -> NDArray[np.bool_]:
-        """Return which tips are under the part."""
-        scene = self._scene
-        outline = scene.part.at(self._state.pose)
-        return np.asarray(shapely.contains_xy(outline, scene.points[:, 0], scene.points[:, 1]))
-
-    def _close(self) -> list[BorderTip]:
-        """Return the tips that bounce lower than counts about edges of a part with mass."""
-        scene = self._scene
-        if not scene.inertial:
-            return []
-        slow = 2.0 * np.sqrt(2.0 * BOUNCE * scene.pitch * scene.rate_size)
-        found = self._touching(BOUNCE * scene.pitch)
-        rows = border_at(scene, self._state.pose, self._state.twist, found).rows
-        w = np.abs(rows @ self._state.twist).max(axis=1)
-        return [tip for tip, speed in zip(found, w, strict=True) if speed <= slow]
-
-    def _touching(self, near: float | None = None) -> list[BorderTip]:
-        """Return the tips on the outline, but those held there."""
-        scene = self._scene
-        held = {tip.tip for tip in self._carriers.border}
-        found = np.empty((4 * len(scene.points) + 4, 2), dtype=np.int32)
-        pose = self._state.pose
-        within = scene.near if near is None else near
-        count = points_on_outline(pose, scene.edges, scene.points, within, found)
-        edges: dict[int, list[int]] = {}
-        for tip, edge in found[:count]:
-            if int(tip) not in held:
-                edges.setdefault(int(tip), []).append(int(edge))
-        return [BorderTip(tip, (on[0], on[min(1, len(on) - 1)])) for tip, on in edges.items()]
 
 
 def _sizes(scene: Scene) -> Array:
     """Return the sizes that errors of the integrator are measured by."""
     length, turn = scene.pitch, scene.pitch / scene.radius
     energy = 0.01 * scene.force * scene.pitch
-    speeds = (
-        [0.1 * scene.speed, 0.1 * scene.speed, 0.1 * scene.speed / scene.radius]
-        if scene.inertial
-        else []
-    )
+    speed = 0.1 * scene.speed
+    speeds = [speed, speed, speed / scene.radius] if scene.inertial else []
     return np.array([length, length, turn, *speeds, *[energy] * 3])

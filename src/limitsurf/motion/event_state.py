@@ -14,7 +14,7 @@ from limitsurf.motion.border import Border, BorderTip, Rates, border_at, solve_f
 from limitsurf.motion.tip_balance import Answer, Balance
 from limitsurf.motion.tip_scene import Scene
 
-__all__ = ["Carriers", "Path", "State", "Steps", "Stretch", "View", "integrate", "scaled_rates"]
+__all__ = ["Carriers", "Path", "State", "Steps", "Stretch", "View", "integrate", "rates_at"]
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ class Stretch:
         at = Balance(scene, pose, twist, time, self._inner, self._tips, self._pivot)
         border = border_at(scene, pose, twist, self._border)
         if len(self._border):
-            rates = scaled_rates(at, border)
+            rates = _scaled_rates(at, border)
             self._shares = solve_free(rates, self._shares, self._all, self._free, scene.rate_size)
         answer = at.answer(self._shares)
         return View(self._shares, border, answer, at.normal(self._shares), at.fading)
@@ -110,9 +110,20 @@ class Steps(NamedTuple):
     stiff: bool
 
 
-def scaled_rates(at: Balance, border: Border) -> Rates:
+def _scaled_rates(at: Balance, border: Border) -> Rates:
     """Return the tips' rates times the shares' sum: for constant forces linear in the shares."""
     return lambda s: border.rates(at.answer(s).rate) * at.carried(s)
+
+
+def rates_at(
+    scene: Scene, state: State, inside: NDArray[np.bool_], tips: list[BorderTip]
+) -> tuple[Rates, Border, Balance]:
+    """Return rates as a function of the shares of tips on the outline, and what they stem from."""
+    where = np.array([tip.tip for tip in tips], dtype=np.int64)
+    inner = np.flatnonzero(inside & ~np.isin(np.arange(len(inside)), where))
+    at = Balance(scene, state.pose, state.twist, state.time, inner, where)
+    border = border_at(scene, state.pose, state.twist, tips)
+    return _scaled_rates(at, border), border, at
 
 
 class Path(NamedTuple):

@@ -8,28 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.errors import SolveFailed
-from limitsurf.motion.border import Border, BorderTip, Rates, border_at, free_tips, settle
+from limitsurf.motion.border import Border, BorderTip, free_tips, settle
 from limitsurf.motion.border_events import BorderCut, snapped
 from limitsurf.motion.bounces import active_edges, settle_bounces
 from limitsurf.motion.event_record import Record
-from limitsurf.motion.event_state import Carriers, State, scaled_rates
-from limitsurf.motion.tip_balance import Balance, contact_velocities
+from limitsurf.motion.event_state import Carriers, State, rates_at
+from limitsurf.motion.sticking import keep_still, pivot_of, stopping_shares
+from limitsurf.motion.tip_balance import Balance
 from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.touching import next_edge
 from limitsurf.motion.trajectory import EventKind
-from limitsurf.tolerances import REST_SPEED
 
 __all__ = ["Regrouping"]
 
 Array = NDArray[np.float64]
-
-#: Slower than this, relative to the speed of the drive, a contact may stick.
-_STICK = 1e-6
-
-#: So much of its friction disk a contact may need to stick.
-_SURE = 0.99
-
-#: Slower than that, the part is stopped if friction can hold it.
-_STOP = REST_SPEED
 
 
 class Regrouping:
@@ -51,7 +43,6 @@ class Regrouping:
 
         Those that are as `close` as the last bounces are high stay there if all of them do.
         """
-        held = {tip.tip for tip in carriers.border}
         extra = [tip for tip in close if tip not in touching]
         if extra:
             kept = self._together(state, carriers, carriers.border + touching + extra)
@@ -68,7 +59,7 @@ class Regrouping:
         shares = np.concatenate([carriers.shares, start])
         pose = snapped(self._scene, state.pose, tips, (-1, -1))
         trial = State(state.time, pose, state.twist, state.energy, state.numerical)
-        self._keep(trial, tips, -1)
+        keep_still(self._scene, trial, tips, -1)
         try:
             settled = self._settled(trial, carriers, tips, shares, {tip.tip for tip in tips})
         except SolveFailed:
@@ -89,7 +80,7 @@ class Regrouping:
             self._record.event(state.time, EventKind.SLIP)
             return carriers
         if cut.kind == "corner":
-            tips[cut.index] = self._at_corner(state, tips[cut.index])
+            tips[cut.which] = next_edge(self._scene, state, tips[cut.which])
         return self._regroup(state, carriers, tips, shares)
 
     def turned(self, state: State, carriers: Carriers, corners: list[BorderTip]) -> Carriers:
@@ -99,10 +90,7 @@ class Regrouping:
         """
         if self._scene.inertial:
             start = carriers.inside[[tip.tip for tip in corners]].astype(np.float64)
-            shares, held = (
-                np.concatenate([carriers.shares, start]),
-                {t.tip for t in carriers.border},
-            )
+            shares, held = np.append(carriers.shares, start), {t.tip for t in carriers.border}
             settled = self._settled(state, carriers, carriers.border + corners, shares, held)
             if settled[2][len(carriers.border) :].any():
                 return self._adopted(state, carriers, *settled[:2])
@@ -117,19 +105,22 @@ class Regrouping:
     def step(self, state: State, carriers: Carriers) -> Carriers:
         """Return the carriers after a step without event: contacts may have come to rest."""
         scene = self._scene
-        self._project(state, carriers)
+        keep_still(scene, state, [carriers.border[k] for k in carriers.free], carriers.pivot)
         if not scene.inertial or scene.grip == 0.0 or not state.twist.any():
             return carriers
-        if scene.rim_speed(state.twist) <= _STOP * scene.speed:
-            return self._stop(state, carriers)
-        return self._pivot(state, carriers)
-
-    def _at_corner(self, state: State, tip: BorderTip) -> BorderTip:
-        scene, edge = self._scene, tip.edges[0]
-        along = border_at(scene, state.pose, state.twist, [tip]).along[0, 0]
-        if along > 0.5 * scene.lengths[edge]:
-            return BorderTip(tip.tip, (edge, int(scene.following[edge])))
-        return BorderTip(tip.tip, (int(np.flatnonzero(scene.following == edge)[0]), edge))
+        shares = stopping_shares(scene, state, carriers)
+        if shares is not None:
+            kinetic = 0.5 * float(scene.mass @ state.twist**2)
+            state.twist, state.numerical = np.zeros(3), state.numerical + kinetic
+            self._record.event(state.time, EventKind.STICK)
+            carriers.pivot = -1
+            return self._regroup(state, carriers, carriers.border, shares)
+        pivot = pivot_of(scene, state, carriers)
+        if pivot >= 0:
+            carriers.pivot = pivot
+            self._record.event(state.time, EventKind.STICK, pivot)
+            keep_still(scene, state, [carriers.border[k] for k in carriers.free], pivot)
+        return carriers
 
     def _regroup(
         self,
@@ -152,11 +143,11 @@ class Regrouping:
         scene, inside = self._scene, old.inside.copy()
         inside[[tip.tip for tip in tips]] = False
         if not scene.inertial:
-            shares = settle(self._rates(state, inside, tips)[0], start, scene.rate_size)
+            shares = settle(rates_at(scene, state, inside, tips)[0], start, scene.rate_size)
             return tips, shares, (shares > 0.0) & (shares < 1.0)
         new = np.array([tip.tip not in held or tip.corner for tip in tips], dtype=np.bool_)
         tips = active_edges(scene, state, tips)
-        rated = partial(self._rates, state)
+        rated = partial(rates_at, scene, state)
         return tips, *settle_bounces(scene, state, inside, tips, start, new, rated)
 
     def _adopted(
@@ -176,23 +167,14 @@ class Regrouping:
             self._tell(state.time, tip.tip, share, old, held, quiet)
         kept = np.flatnonzero((shares > 0.0) & (shares < 1.0))
         border = [tips[k] for k in kept]
-        rates, geometry, balance = self._rates(state, inside, border)
+        rates, geometry, balance = rates_at(scene, state, inside, border)
         edges = self._edges(border, geometry, balance, shares[kept])
         free = free_tips(rates, shares[kept], np.arange(len(kept)), scene.rate_size)
         new = Carriers(inside, edges, shares[kept], free, old.pivot)
         if len(free):
             state.pose = snapped(scene, state.pose, [edges[k] for k in free], (-1, -1))
-        self._project(state, new)
+        keep_still(scene, state, [edges[k] for k in free], new.pivot)
         return new
-
-    def _rates(
-        self, state: State, inside: NDArray[np.bool_], tips: list[BorderTip]
-    ) -> tuple[Rates, Border, Balance]:
-        where = np.array([tip.tip for tip in tips], dtype=np.int64)
-        inner = np.flatnonzero(inside & ~np.isin(np.arange(len(inside)), where))
-        at = Balance(self._scene, state.pose, state.twist, state.time, inner, where)
-        border = border_at(self._scene, state.pose, state.twist, tips)
-        return scaled_rates(at, border), border, at
 
     def _tell(
         self, time: float, tip: int, share: float, old: Carriers, held: set[int], quiet: bool
@@ -212,62 +194,3 @@ class Regrouping:
         which = np.where(border.convex, both.argmin(axis=1), both.argmax(axis=1))
         edges = [tip.edges[k] for tip, k in zip(tips, which, strict=True)]
         return [BorderTip(tip.tip, (e, e)) for tip, e in zip(tips, edges, strict=True)]
-
-    def _project(self, state: State, carriers: Carriers) -> None:
-        """Take away the velocity with which a part with mass would leave tips that it keeps."""
-        tips = [carriers.border[k] for k in carriers.free]
-        self._keep(state, tips, carriers.pivot)
-
-    def _keep(self, state: State, tips: list[BorderTip], pivot: int) -> None:
-        """Take away the velocity with which tips would leave the outline, and a pivot its place."""
-        scene = self._scene
-        if not state.twist.any() or (not tips and pivot < 0):
-            return
-        rows = border_at(scene, state.pose, state.twist, tips).rows[:, 0]
-        if pivot >= 0:
-            x, y = scene.points[pivot] - state.pose[:2]
-            rows = np.vstack([rows, [1.0, 0.0, -y], [0.0, 1.0, x]])
-        root = np.sqrt(scene.mass)
-        scaled, units = root * state.twist, rows / root
-        units = units / np.linalg.norm(units, axis=1)[:, None]
-        change, _, rank, _ = np.linalg.lstsq(units, units @ scaled, rcond=1e-9)
-        self._slow_down(state, (scaled - change) / root if rank < 3 else np.zeros(3))
-
-    def _slow_down(self, state: State, twist: Array) -> None:
-        mass = self._scene.mass
-        state.numerical += 0.5 * float(state.twist @ (mass * state.twist) - twist @ (mass * twist))
-        state.twist = twist
-
-    def _stop(self, state: State, carriers: Carriers) -> Carriers:
-        """Stop the part if friction, and shares on the outline, hold it."""
-        still = State(state.time, state.pose, np.zeros(3))
-        rates, _, at = self._rates(still, carriers.inside, carriers.border)
-        shares = settle(rates, carriers.shares, self._scene.rate_size)
-        if not at.answer(shares).sticks:
-            return carriers
-        self._slow_down(state, still.twist)
-        self._record.event(state.time, EventKind.STICK)
-        carriers.pivot = -1
-        return self._regroup(state, carriers, carriers.border, shares)
-
-    def _pivot(self, state: State, carriers: Carriers) -> Carriers:
-        """Let the slowest contact stick if its friction suffices to turn the part about it."""
-        scene, inner = self._scene, np.flatnonzero(carriers.inside)
-        border = np.array([tip.tip for tip in carriers.border], dtype=np.int64)
-        tips = np.concatenate([inner, border])
-        u = contact_velocities(scene.points[tips] - state.pose[:2], state.twist)
-        speeds = np.hypot(u[:, 0], u[:, 1])
-        order = np.argsort(speeds)
-        slow = min(_STICK * scene.speed, 1e-2 * speeds[order[min(1, len(order) - 1)]])
-        if carriers.pivot >= 0 or not speeds[order[0]] < slow:
-            return carriers
-        trial = State(state.time, state.pose, state.twist, numerical=state.numerical)
-        pivot = carriers.pivot = int(tips[order[0]])
-        self._project(trial, carriers)
-        at = Balance(scene, state.pose, trial.twist, state.time, inner, border, pivot)
-        if trial.twist.any() and at.answer(carriers.shares).needed <= _SURE:
-            self._record.event(state.time, EventKind.STICK, pivot)
-            state.twist, state.numerical = trial.twist, trial.numerical
-        else:
-            carriers.pivot = -1
-        return carriers

@@ -1,8 +1,8 @@
 r"""Loads of the tips that carry a part, for given shares of those on its outline.
 
 A tip with share :math:`s_i` carries :math:`W s_i / \sum_j s_j`; it is 1 inside. At rest, or without
-mass, friction is the closest point of the sum of the tips' disks (``driven_twist``); on a moving part
-with mass it opposes the velocity :math:`u_i` of each contact.
+mass, friction is the closest point of the sum of the tips' disks (``driven_twist``); on a moving
+part with mass it opposes the velocity :math:`u_i` of each contact.
 """
 
 from __future__ import annotations
