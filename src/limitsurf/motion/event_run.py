@@ -23,7 +23,7 @@ __all__ = ["EventRun"]
 
 Array = NDArray[np.float64]
 
-_STIFF = 100.0  # changes of velocity by friction in a step, from which it is stiff
+_STIFF = 300.0  # changes of velocity by friction in a step, from which it is stiff
 _BALANCED = 1e-9  # of the drive's force: what may be left at rest
 
 
@@ -129,7 +129,7 @@ class EventRun:
         longest = self._longest(view)
         steps = Steps(self._first, longest, view.fading * longest > _STIFF)
         path = integrate(stretch, state.time, self._limit, steps, self._tolerance)
-        self._first = 5.0 * path.length
+        self._first = 2.5 * path.length
         cut = self._cut(stretch, path, view)
         if cut.tau < 1.0:
             self._cuts += 1
