@@ -83,11 +83,11 @@ def event_motion(
     >>> from limitsurf.actuators.activation import squeeze_activation
     >>> from limitsurf.actuators.actuator_array import load_array
     >>> from limitsurf.motion.drag import air_film_drag
-    >>> array, part = load_array("resonator64"), Part.from_file("nano_sim")
-    >>> drive = squeeze_activation(array, 0.0)
-    >>> path = event_motion(part, drive, (1e-5, 3e-5, 0.1), 0.01, drag=air_film_drag(part, array))
-    >>> print(path.outcome, path.events[0].kind.name)
-    still moving at the time limit ENTER
+    >>> array, part = load_array("resonator64"), Part.from_file("paper_t")
+    >>> drive, drag = squeeze_activation(array, 0.0), air_film_drag(part, array)
+    >>> path = event_motion(part, drive, (0.0, 1e-4, 1.5), 20.0, drag=drag)
+    >>> print(path.events[-1].kind)
+    the part rests
     """
     start = np.array(as_array("pose", pose, 3))
     moving = np.array(as_array("twist", twist, 3))

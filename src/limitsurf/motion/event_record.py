@@ -20,7 +20,15 @@ class Record:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self._rows: list[Array] = []
+        self._worst, self._told = 0.0, -1
         self.events: list[MotionEvent] = []
+
+    def see(self, view: View) -> bool:
+        """Take notice of an error bound; return whether something happened since the last one."""
+        self._worst = max(self._worst, view.answer.bound)
+        news = self._told != len(self.events)
+        self._told = len(self.events)
+        return news
 
     def frame(self, state: State, view: View, carriers: int, residual: float = 0.0) -> None:
         """Add a frame; `residual` is what loads do not add up to, at rest."""
@@ -50,7 +58,7 @@ class Record:
             error_bounds=table[:, 10].copy(),
             tips=table[:, 11].astype(np.int64),
             outcome=outcome,
-            worst_error=float(table[:, 10].max() / self._scene.weight),
+            worst_error=float(max(self._worst, table[:, 10].max()) / self._scene.weight),
             energy=EnergyBalance(*table[:, 12:17].T.copy()),
             events=tuple(self.events),
         )

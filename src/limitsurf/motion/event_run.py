@@ -68,7 +68,9 @@ class EventRun:
         self._tolerance = tolerance * _sizes(scene)
         self._first, self._cuts = interval, 0
         if not scene.on_array(pose):
-            raise InputError("pose", "puts the part over the edge of the array", value=tuple(pose))
+            raise InputError(
+                "pose", "puts the part over the edge of the array", value=tuple(pose.tolist())
+            )
         self._groups = Regrouping(scene, self.record)
         touching = touching_tips(scene, pose, [], scene.near)
         self._carriers = self._groups.first(self._state, tips_under(scene, pose), touching)
@@ -80,7 +82,8 @@ class EventRun:
             state = self._state
             view = stretch.look(state.time, state.pose, state.twist)
             outcome = self._ending(view)
-            self._frame(state, view, outcome)
+            if self.record.see(view) or outcome is not None:
+                self._frame(state, view, outcome)
             if outcome is not None:
                 return outcome
             if self._cuts >= max_events:
@@ -125,34 +128,35 @@ class EventRun:
 
     def _advance(self, stretch: Stretch, view: View) -> bool:
         """Move to the next event, or by a step; return whether the part leaves the array."""
-        state, scene = self._state, self._scene
+        state, scene, carriers = self._state, self._scene, self._carriers
         longest = self._longest(view)
         steps = Steps(self._first, longest, view.fading * longest > _STIFF)
         path = integrate(stretch, state.time, self._limit, steps, self._tolerance)
-        self._first = 2.5 * path.length
         cut = self._cut(stretch, path, view)
+        self._first = 2.5 * path.length
         if cut.tau < 1.0:
             self._cuts += 1
             self._first = max(path.length, 2.0 * cut.tau * path.length)
-        touching = touching_tips(scene, state.pose, self._carriers.border, scene.near)
+        touching = touching_tips(scene, state.pose, carriers.border, scene.near)
         corners = [t for t in touching if t.corner and t.tip != cut.crossing[0] and cut.tau > 0.0]
-        after = stretch.split(path.at(cut.tau))[0]
-        wrong = gone_round(scene, corners, self._carriers, after)
-        if wrong:
-            self._carriers = self._groups.turned(state, self._carriers, wrong)
+        turned = gone_round(scene, corners, carriers, stretch.split(path.at(cut.tau))[0])
+        if turned:
+            self._carriers = self._groups.turned(state, carriers, turned)
             self._cuts += 1
             return False
         self._frames_until(stretch, path, cut.tau)
-        y = path.at(cut.tau)
-        pose, twist, energy = stretch.split(y)
+        self._state = self._end_of(stretch, path, cut)
+        if not cut.edge:
+            self._happen(cut)
+        return cut.edge
+
+    def _end_of(self, stretch: Stretch, path: Path, cut: Cut) -> State:
+        """Return the state where a path is cut."""
+        pose, twist, energy = stretch.split(path.at(cut.tau))
         last = cut.tau == 1.0 and path.begin + path.length >= self._limit
         time = self._limit if last else path.begin + cut.tau * path.length
         pose = self._held(pose, cut.crossing)
-        self._state = State(time, pose, twist, energy, state.numerical)
-        if cut.edge:
-            return True
-        self._happen(cut)
-        return False
+        return State(time, pose, twist, energy, self._state.numerical)
 
     def _longest(self, view: View) -> float:
         """Return a step in which the part moves half a pitch or so."""
