@@ -69,9 +69,9 @@ def _first_root(
     """Return the first tau below `best` at which a point leaves `side` through an edge, or `best`.
 
     `side` = 0 is unknown, that of the first interval that tells. Closer than `near` to the line
-    nothing tells; changes of a thousandth of that are rounding.
+    nothing tells.
     """
-    low, width, floor = 0.0, 1.0, 1e-3 * near
+    low, width = 0.0, 1.0
     while low < best:
         r = 0.5 * width
         at = side_of(arc, low + r, x, y, line, fixed)
@@ -79,7 +79,7 @@ def _first_root(
         shift = abs(at.ds) * r + 0.5 * curvature * r * r
         beyond = at.s + shift < -near or at.s - shift > line.length + near
         apart, monotone = abs(at.d) > change, abs(at.dd) > curvature * r
-        if change > floor and not (apart or beyond or monotone) and width > _NARROW:
+        if change > near and not (apart or beyond or monotone) and width > _NARROW:
             width = r
             continue
         end = at.d if apart else side_of(arc, low + width, x, y, line, fixed).d
