@@ -15,6 +15,7 @@ __all__ = [
     "PartTooHeavy",
     "SolveFailed",
     "TipStalled",
+    "TooManyEvents",
 ]
 
 
@@ -145,3 +146,14 @@ class SolveFailed(LimitSurfError):
     def __init__(self, message: str, best: Any = None) -> None:
         self.best = best
         super().__init__(message)
+
+
+class TooManyEvents(LimitSurfError):
+    """A motion had `max_events` events when it was at `time` [s]."""
+
+    def __init__(self, max_events: int, time: float) -> None:
+        self.max_events, self.time = max_events, time
+        super().__init__(
+            f"max_events: {max_events} events until {time:.6g} s; raise it, or give a shorter "
+            "duration"
+        )
