@@ -8,8 +8,8 @@ import shapely
 from limitsurf.actuators.activation import Activation, squeeze_activation
 from limitsurf.actuators.actuator_array import load_array
 from limitsurf.geometry.part import Part
+from limitsurf.motion.array_events.event_motion import event_motion
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.event_motion import event_motion
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.trajectory import EventKind
 

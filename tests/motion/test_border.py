@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from limitsurf.errors import SolveFailed
-from limitsurf.motion.border import free_tips, settle, solve_free
+from limitsurf.motion.array_events.border import free_tips, settle, solve_free
 
 
 def linear(A, b):

@@ -1,5 +1,7 @@
 """What `simulate` does with each kind of drive, and schedules of feet and fields."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -176,3 +178,34 @@ def test_options_that_do_not_fit_arrays_and_fields_are_named(array64, paper_t, b
         simulate(block, Schedule([(0.0, DensityField.squeeze(0.0, 1.0))]))
     with pytest.raises(InputError, match="drag: "):
         simulate(block, DensityField.squeeze(0.0, 1.0), mode="quasi-static")
+
+
+def test_events_on_an_array_go_with_schedules_slopes_and_loads(array64):
+    """The same motion as in small steps, on points: one drive after the other, on a slope."""
+    pixel = replace(array64.pixel, tip_width=0.0, residual_fraction=0.0)
+    array = replace(array64, pixel=pixel)
+    part = Part(1e-4 * np.array([(0, 0), (18, 2), (21, 13), (9, 11), (3, 19)]), "80 g/m^2")
+    plan = Schedule([(0.0, squeeze_activation(array, 0.4)), (0.05, squeeze_activation(array, 1.2))])
+    options = {
+        "mode": "quasi-static",
+        "tilt": (2e-4, -1e-4),
+        "load": lambda t: (1e-10 * np.sin(40 * t), 0.0, 0.0),
+    }
+    start = (3e-4, 2e-4, 0.7)
+    path = simulate(part, plan, start, 0.1, method="events", **options)
+    kinds = [e.kind for e in path.events]
+    assert kinds.count(EventKind.SWITCH) == 1
+    assert kinds.count(EventKind.ENTER) > 3
+    assert np.all(np.diff(path.times) >= 0.0)
+    scale = [array.site_pitch, array.site_pitch, array.site_pitch / part.circumradius]
+    errors = []
+    for step in (1e-4, 2.5e-5):
+        steps = simulate(part, plan, start, 0.1, time_step=step, **options)
+        errors.append(np.abs((steps.final_pose - path.final_pose) / scale).max())
+    assert errors[1] < 0.5 * errors[0]
+    assert errors[1] < 2e-3
+    with pytest.raises(InputError, match="drive: is a function of time"):
+        simulate(part, plan.at, start, 0.1, method="events")
+    tip = OscillatingContact(0.5, [1.0, 0.0], [1.0, -1.0], 1.0)
+    with pytest.raises(InputError, match="tip: is not for events"):
+        simulate(part, plan, start, 0.1, method="events", tip=tip)

@@ -11,8 +11,8 @@ from scipy.optimize import linprog
 from limitsurf.actuators.activation import Activation, squeeze_activation
 from limitsurf.errors import InputError, PartTooHeavy, TooManyEvents
 from limitsurf.geometry.part import Part
+from limitsurf.motion.array_events.event_motion import event_motion
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.event_motion import event_motion
 from limitsurf.motion.trajectory import EventKind, Outcome
 from tests.motion.event_scenes import distances, on_outline, random_case, small_array
 

@@ -43,6 +43,8 @@ def _contacts() -> None:
     part = ls.Part.from_file("paper_t")
     drive = ls.squeeze_activation(ls.load_array("resonator32"), 0.0)
     ls.simulate(part, drive, duration=1e-3)
+    for mode in ("inertial", "quasi-static"):
+        ls.simulate(part, drive, duration=1e-3, mode=mode, method="events")
     ls.LatticeContacts(part, 1e-4, (0.0, 0.0)).move((0.0, 0.0, 0.1))
     ls.plan_alignment(part)
 

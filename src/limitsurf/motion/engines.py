@@ -2,72 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from limitsurf.actuators.activation import Activation
 from limitsurf.actuators.density_field import DensityField
 from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.slide_step import Body, Pace
-from limitsurf.motion.array_steps import ArraySteps
-from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.driven import Driven, DrivenMotion, Watch, as_activation
+from limitsurf.motion.array_engine import on_array
+from limitsurf.motion.driven import Driven, as_activation
+from limitsurf.motion.engine import Engine, InTurn, frames_of, load_from
 from limitsurf.motion.feet import feet_motion
 from limitsurf.motion.field_motion import field_motion
-from limitsurf.motion.in_turn import Move, in_turn
 from limitsurf.motion.load_table import LoadLike, LoadTable
 from limitsurf.motion.loads import gravity, with_gravity
-from limitsurf.motion.options import Options, checked_drag
+from limitsurf.motion.options import Options
 from limitsurf.motion.schedule import Schedule
-from limitsurf.motion.time_scales import TimeScales, time_scales
-from limitsurf.motion.tip_steps import TipSteps
 from limitsurf.motion.trajectory import Trajectory
 from limitsurf.sets.arguments import as_positive
-from limitsurf.tolerances import CONTACT_STEP, REST_SPEED
 
-__all__ = ["Drive", "Engine", "engine_of"]
+__all__ = ["Drive", "engine_of"]
 
 Array = NDArray[np.float64]
 Drive = Driven | ContactSet | DensityField | Schedule[ContactSet] | Schedule[DensityField]
-
-_MAX_STEPS = 10_000_000
-_USUALLY = 6.0  # the default time limit is that much longer than a squeeze of paper takes
-_LONG = 20.0  # longest adaptive step, in default steps
-
-
-class Engine(Protocol):
-    """What moves a part, for at most `duration` [s]."""
-
-    @property
-    def duration(self) -> float | None:
-        """Time limit [s], if it is known before."""
-
-    def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
-        """Return the motion from a pose and a twist."""
-
-
-@dataclass(frozen=True, eq=False)
-class InTurn:
-    """An `Engine` for one drive, or a schedule of drives that each are moved on at once."""
-
-    drive: Any
-    duration: float | None
-    move: Move[Any]
-
-    def __call__(self, pose: Array, twist: Array, watch: Watch | None = None) -> Trajectory:
-        """Return the motion from a pose and a twist; it is watched when a drive is done."""
-        if isinstance(self.drive, Schedule):
-            assert self.duration is not None
-            return in_turn(self.drive.pieces(self.duration), self.move, pose, twist, watch)
-        trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
-        if watch is not None:
-            watch(trajectory.duration, None)
-        return trajectory
 
 
 def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) -> Engine:
@@ -83,7 +42,7 @@ def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) 
         return _in_field(part, drive, limit, chosen)
     chosen.refuse("arrays", "friction")
     asked = drive(0.0) if callable(drive) else first
-    return _on_array(part, drive, as_activation(asked), limit, chosen)  # type: ignore[arg-type]
+    return on_array(part, drive, as_activation(asked), limit, chosen)  # type: ignore[arg-type]
 
 
 def _first(drive: Drive) -> Any:
@@ -96,44 +55,6 @@ def _first(drive: Drive) -> Any:
             what = f"has a {type(first).__name__} and a {type(each).__name__}"
             raise InputError("drive", what, remedy="schedule drives of one kind")
     return first
-
-
-def _on_array(
-    part: Part, drive: Driven, first: Activation, duration: float | None, options: Options
-) -> Engine:
-    array = first.array
-    weight = gravity(part, options.tilt)
-    drag = air_film_drag(part, array)
-    if options.drag is not None:
-        drag = checked_drag(options.drag, options.mode)
-    table = with_gravity(weight, options.load, duration)
-    scales = time_scales(part, array, load=table.largest, drag=drag)
-    limit = scales.duration if duration is None else duration
-    mass = np.array([part.mass, part.mass, part.inertia])
-    if options.mode == "quasi-static":
-        mass = np.zeros(3)
-    edges = np.array(part.edges)  # a copy: kernels are compiled anew for read-only arrays
-    body = Body(part.circumradius, edges, weight.normal, mass, drag, table.kernel)
-    dt = _longest_step(options, scales, limit)
-    usual = limit if duration is not None else limit / _USUALLY
-    every, rest = max(usual / options.frames, dt), REST_SPEED * scales.speed
-    stepper: ArraySteps | TipSteps
-    if options.tip is not None:
-        options.refuse("steps with a tip", "tolerance")
-        stepper = TipSteps(part, body, table, options.tip, dt, every, rest)
-    else:
-        stepper = ArraySteps(body, Pace(dt, options.tolerance or 0.0, CONTACT_STEP, rest), every)
-    return DrivenMotion(stepper, drive, limit, dt)
-
-
-def _longest_step(options: Options, scales: TimeScales, limit: float) -> float:
-    if options.time_step is None:
-        dt = scales.step if options.tolerance is None else _LONG * scales.step
-    else:
-        dt = options.time_step
-    if limit / dt > _MAX_STEPS:
-        raise InputError("time_step", f"needs {limit / dt:.3g} steps", value=dt, remedy="raise it")
-    return dt
 
 
 def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options) -> Engine:
@@ -150,12 +71,12 @@ def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options)
             q,
             time,
             twist=v,
-            load=_from(table, begin),
+            load=load_from(table, begin),
             drag=options.drag,
             mode=options.mode,
             time_step=options.time_step,
             tolerance=options.tolerance,
-            frames=_share(options.frames, time, duration),
+            frames=frames_of(options.frames, time, duration),
             **given,
         )
 
@@ -185,26 +106,10 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
             mode=options.mode,
             drag=options.drag,
             friction=options.friction,
-            load=_from(load, begin),
+            load=load_from(load, begin),
             time_step=options.time_step,
-            frames=_share(options.frames, time, duration),
+            frames=frames_of(options.frames, time, duration),
             **given,
         )
 
     return InTurn(drive, duration, move)
-
-
-def _share(frames: int, time: float | None, duration: float | None) -> int:
-    """Return the frames of a piece of a schedule."""
-    if time is None or duration is None:
-        return frames
-    return max(round(frames * time / duration), 1)
-
-
-def _from(load: LoadLike, begin: float) -> LoadLike:
-    """Return a load as a function of the time since `begin`."""
-    if isinstance(load, LoadTable) and load.steady:
-        return load(0.0)
-    if begin == 0.0 or not callable(load):
-        return load
-    return lambda t: load(begin + t)

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from limitsurf.motion.border import Border, BorderTip, Rates, border_at, settle
-from limitsurf.motion.event_state import State
-from limitsurf.motion.tip_balance import Balance
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.border import Border, BorderTip, Rates, border_at, settle
+from limitsurf.motion.array_events.event_state import State
+from limitsurf.motion.array_events.tip_balance import Balance
+from limitsurf.motion.array_events.tip_scene import Scene
 
 __all__ = ["BOUNCE", "active_edges", "settle_bounces"]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from limitsurf.kernels.contact_problem import new_best
 from limitsurf.kernels.driven_twist import driven_twist
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.tip_scene import Scene
 from limitsurf.tolerances import CONTACT_SUM
 
 __all__ = ["Answer", "Balance", "contact_velocities", "load_rows"]

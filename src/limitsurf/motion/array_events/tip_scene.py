@@ -124,12 +124,19 @@ class Scene:
         return bool((corners >= low).all() and (corners <= high).all())
 
 
-def build_scene(part: Part, drive: Activation, drag: ArrayLike, load: Load, mode: str) -> Scene:
+def build_scene(
+    part: Part,
+    drive: Activation,
+    drag: ArrayLike,
+    load: Load,
+    mode: str,
+    weight: float | None = None,
+) -> Scene:
     """Return the scene of a part on an activated array; `mode` as in `event_motion`."""
     if mode not in ("inertial", "quasi-static"):
         raise InputError("mode", "is unknown", value=mode, remedy="use inertial or quasi-static")
     array, pixel = drive.array, drive.array.pixel
-    rows, columns = np.nonzero(drive.active)
+    rows, columns = np.nonzero(drive.running)
     origin, pitch = np.array(array.first_site), array.site_pitch
     low = origin - 0.5 * pitch
     high = low + pitch * np.array(drive.active.shape[::-1])
@@ -151,7 +158,7 @@ def build_scene(part: Part, drive: Activation, drag: ArrayLike, load: Load, mode
         forces=push * array.site_directions[rows, columns],
         where=np.column_stack([rows, columns]),
         grip=pixel.friction * pixel.residual_fraction,
-        weight=part.mass * g,
+        weight=part.mass * g if weight is None else weight,
         lift=pixel.vertical_force(array.voltage),
         mass=np.array([part.mass, part.mass, part.inertia]),
         drag=_checked_drag(drag, mode),

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from limitsurf.motion.border import BorderTip, border_at
-from limitsurf.motion.event_state import Carriers, Path, Stretch, View
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.border import BorderTip, border_at
+from limitsurf.motion.array_events.event_state import Carriers, Path, Stretch, View
+from limitsurf.motion.array_events.tip_scene import Scene
 
 __all__ = ["BorderCut", "first_border_cut", "snapped"]
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from limitsurf.errors import InputError, TooManyEvents
 from limitsurf.kernels.outline_crossings import first_crossing, first_exit
 from limitsurf.kernels.pose_arc import Arc
-from limitsurf.motion.border_events import BorderCut, first_border_cut, snapped
-from limitsurf.motion.event_record import Record
-from limitsurf.motion.event_state import Path, State, Steps, Stretch, View, integrate
-from limitsurf.motion.regroup import Regrouping
-from limitsurf.motion.tip_scene import Scene
-from limitsurf.motion.touching import close_tips, gone_round, tips_under, touching_tips
+from limitsurf.motion.array_events.border_events import BorderCut, first_border_cut, snapped
+from limitsurf.motion.array_events.event_record import Record
+from limitsurf.motion.array_events.event_state import Path, State, Steps, Stretch, View, integrate
+from limitsurf.motion.array_events.regroup import Regrouping
+from limitsurf.motion.array_events.tip_scene import Scene
+from limitsurf.motion.array_events.touching import close_tips, gone_round, tips_under, touching_tips
 from limitsurf.motion.trajectory import EventKind, Outcome
 from limitsurf.tolerances import REST_SPEED
 

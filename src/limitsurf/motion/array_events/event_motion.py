@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.actuators.activation import Activation
 from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
-from limitsurf.motion.event_run import EventRun
-from limitsurf.motion.tip_scene import Load, build_scene
+from limitsurf.motion.array_events.event_run import EventRun
+from limitsurf.motion.array_events.tip_scene import Load, build_scene
 from limitsurf.motion.trajectory import Outcome, Trajectory
 from limitsurf.sets.arguments import as_array, as_number
 
@@ -28,6 +28,7 @@ def event_motion(
     mode: str = "quasi-static",
     drag: ArrayLike,
     load: Load = None,
+    weight: float | None = None,
     tolerance: float = 1e-9,
     max_events: int = 100_000,
     frames: int = 200,
@@ -58,6 +59,8 @@ def event_motion(
     load : (3,) float or callable, optional
         External load about the centre of mass, world axes [N, N, N m], or that as a smooth function
         of time.
+    weight : float, optional
+        What the tips carry [N], less than the part's weight on a slope.
     tolerance : float
         Error of a step of the integrator, relative to the pitch.
     max_events : int
@@ -97,7 +100,7 @@ def event_motion(
     for name, count in (("frames", frames), ("max_events", max_events)):
         if count < 1:
             raise InputError(name, "must be at least 1", value=count)
-    scene = build_scene(part, drive, drag, load, mode)
+    scene = build_scene(part, drive, drag, load, mode, weight)
     if not scene.inertial:
         moving[:] = 0.0
     run = EventRun(scene, start, moving, limit, float(tolerance), limit / frames)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, lsq_linear
 
 from limitsurf.errors import SolveFailed
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.tip_scene import Scene
 
 __all__ = ["Border", "BorderTip", "Rates", "border_at", "free_tips", "settle", "solve_free"]
 

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.errors import SolveFailed
-from limitsurf.motion.border import Border, BorderTip, free_tips, settle
-from limitsurf.motion.border_events import BorderCut, snapped
-from limitsurf.motion.bounces import active_edges, settle_bounces
-from limitsurf.motion.event_record import Record
-from limitsurf.motion.event_state import Carriers, State, rates_at
-from limitsurf.motion.sticking import keep_still, pivot_of, stopping_shares
-from limitsurf.motion.tip_balance import Balance
-from limitsurf.motion.tip_scene import Scene
-from limitsurf.motion.touching import next_edge
+from limitsurf.motion.array_events.border import Border, BorderTip, free_tips, settle
+from limitsurf.motion.array_events.border_events import BorderCut, snapped
+from limitsurf.motion.array_events.bounces import active_edges, settle_bounces
+from limitsurf.motion.array_events.event_record import Record
+from limitsurf.motion.array_events.event_state import Carriers, State, rates_at
+from limitsurf.motion.array_events.sticking import keep_still, pivot_of, stopping_shares
+from limitsurf.motion.array_events.tip_balance import Balance
+from limitsurf.motion.array_events.tip_scene import Scene
+from limitsurf.motion.array_events.touching import next_edge
 from limitsurf.motion.trajectory import EventKind
 
 __all__ = ["Regrouping"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from limitsurf.motion.border import BorderTip, border_at, settle
-from limitsurf.motion.event_state import Carriers, State, rates_at
-from limitsurf.motion.tip_balance import Balance, contact_velocities
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.border import BorderTip, border_at, settle
+from limitsurf.motion.array_events.event_state import Carriers, State, rates_at
+from limitsurf.motion.array_events.tip_balance import Balance, contact_velocities
+from limitsurf.motion.array_events.tip_scene import Scene
 from limitsurf.tolerances import REST_SPEED
 
 __all__ = ["keep_still", "pivot_of", "stopping_shares"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from limitsurf.motion.event_state import State, View
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.event_state import State, View
+from limitsurf.motion.array_events.tip_scene import Scene
 from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
 
 __all__ = ["Record"]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, Radau
 
 from limitsurf.errors import SolveFailed
-from limitsurf.motion.border import Border, BorderTip, Rates, border_at, solve_free
-from limitsurf.motion.tip_balance import Answer, Balance
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.border import Border, BorderTip, Rates, border_at, solve_free
+from limitsurf.motion.array_events.tip_balance import Answer, Balance
+from limitsurf.motion.array_events.tip_scene import Scene
 
 __all__ = ["Carriers", "Path", "State", "Steps", "Stretch", "View", "integrate", "rates_at"]
 

@@ -7,10 +7,10 @@ import shapely
 from numpy.typing import NDArray
 
 from limitsurf.kernels.outline_crossings import points_on_outline
-from limitsurf.motion.border import BorderTip, border_at
-from limitsurf.motion.bounces import BOUNCE
-from limitsurf.motion.event_state import Carriers, State
-from limitsurf.motion.tip_scene import Scene
+from limitsurf.motion.array_events.border import BorderTip, border_at
+from limitsurf.motion.array_events.bounces import BOUNCE
+from limitsurf.motion.array_events.event_state import Carriers, State
+from limitsurf.motion.array_events.tip_scene import Scene
 
 __all__ = ["close_tips", "gone_round", "next_edge", "tips_under", "touching_tips"]
 

@@ -1,0 +1,1 @@
+"""Motion of a part on an array from event to event."""
