@@ -9,6 +9,7 @@ NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 PRINTED = {
     "01_active_contacts": ("Wheel(", "all numbers hold"),
     "02_walker": ("SteadyWalk(held)", "all numbers hold"),
+    "03_slider_on_array": ("Runs(200: 200 at rest)", "all numbers hold"),
     "align_a_part": ("AlignmentPlan(", "Verification("),
 }
 
