@@ -125,7 +125,7 @@ def test_first_site_is_right_to_the_last_place(rng, origin, pitch):
     for i in rng.integers(-1000, 1000, 200):
         site = origin + pitch * i
         for position in (np.nextafter(site, -np.inf), site, np.nextafter(site, np.inf)):
-            first = first_at_least(position, origin, pitch)
+            first = first_at_least(position, origin, pitch, 1.0 / pitch)
             slack = 2 * np.spacing(max(abs(position), abs(origin)))
             assert origin + pitch * first >= position - slack
             assert origin + pitch * (first - 1) < position + slack

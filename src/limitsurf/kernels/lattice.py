@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from limitsurf.kernels.compile import Bools, Floats, compiled
+from limitsurf.kernels.compile import Bools, Floats, compiled, inlined
 from limitsurf.kernels.vectors import length
 
 __all__ = [
@@ -37,18 +37,18 @@ class Lattice(NamedTuple):
 
 
 @compiled
-def first_site(position: float, origin: float, pitch: float) -> int:
-    """Return the first row or column from a position on."""
-    return max(math.ceil((position - origin) / pitch), 0)
+def first_site(position: float, origin: float, per_pitch: float) -> int:
+    """Return the first row or column from a position on; `per_pitch` is one over the pitch."""
+    return max(math.ceil((position - origin) * per_pitch), 0)
 
 
 @compiled
-def last_site(position: float, origin: float, pitch: float, n: int) -> int:
+def last_site(position: float, origin: float, per_pitch: float, n: int) -> int:
     """Return the last of n rows or columns up to a position."""
-    return min(math.floor((position - origin) / pitch), n - 1)
+    return min(math.floor((position - origin) * per_pitch), n - 1)
 
 
-@compiled
+@inlined
 def holds(lattice: Lattice, edges: Floats) -> bool:
     """Return whether all vertices lie over the cells of the sites."""
     half = 0.5 * lattice.pitch

@@ -49,12 +49,13 @@ class Spans(NamedTuple):
 
 
 @compiled
-def first_at_least(position: float, origin: float, pitch: float) -> int:
+def first_at_least(position: float, origin: float, pitch: float, per_pitch: float) -> int:
     """Return the first number i with ``origin + pitch i >= position``.
 
-    The quotient is rounded, and so it is corrected: equal to the last place, and no site between.
+    The product with ``per_pitch = 1 / pitch`` is rounded, and so it is corrected: equal to the last
+    place, and no site between.
     """
-    i = math.ceil((position - origin) / pitch)
+    i = math.ceil((position - origin) * per_pitch)
     while origin + pitch * (i - 1) >= position:
         i -= 1
     while origin + pitch * i < position:
@@ -81,12 +82,13 @@ def row_crossings(edges: Floats, origin_y: float, pitch: float, rows: int) -> Cr
     rows : int
         Their number; negative if the lattice has no end.
     """
-    n = edges.shape[0]
-    begin, end = np.empty(n, np.int32), np.empty(n, np.int32)
+    n, per_pitch = edges.shape[0], 1.0 / pitch
+    ends = np.empty((2, n), np.int32)
+    begin, end = ends[0], ends[1]
     first, last = np.iinfo(np.int32).max, np.iinfo(np.int32).min
     for e in range(n):
-        one = _clipped(first_at_least(edges[e, 1], origin_y, pitch), rows)
-        other = _clipped(first_at_least(edges[e, 3], origin_y, pitch), rows)
+        one = _clipped(first_at_least(edges[e, 1], origin_y, pitch, per_pitch), rows)
+        other = _clipped(first_at_least(edges[e, 3], origin_y, pitch, per_pitch), rows)
         begin[e], end[e] = min(one, other), max(one, other)
         first, last = min(first, begin[e]), max(last, end[e])
     if last <= first:
@@ -141,7 +143,7 @@ def row_spans(
     """
     crossings = row_crossings(edges, origin_y, pitch, rows)
     n = crossings.offsets.shape[0] - 1
-    most = crossings.x.shape[0] // 2
+    most, per_pitch = crossings.x.shape[0] // 2, 1.0 / pitch
     offsets, left, right = (
         np.zeros(n + 1, np.int32),
         np.empty(most, np.int32),
@@ -150,13 +152,13 @@ def row_spans(
     count = 0
     for k in range(n):
         for i in range(crossings.offsets[k], crossings.offsets[k + 1] - 1, 2):
-            first = _clipped(first_at_least(crossings.x[i], origin_x, pitch), columns)
-            last = _clipped(first_at_least(crossings.x[i + 1], origin_x, pitch), columns)
+            first = _clipped(first_at_least(crossings.x[i], origin_x, pitch, per_pitch), columns)
+            last = _clipped(first_at_least(crossings.x[i + 1], origin_x, pitch, per_pitch), columns)
             if first < last:
                 left[count], right[count] = first, last
                 count += 1
         offsets[k + 1] = count
-    return Spans(crossings.first_row, offsets, left[:count].copy(), right[:count].copy())
+    return Spans(crossings.first_row, offsets, left[:count], right[:count])
 
 
 @compiled

@@ -128,11 +128,12 @@ def slide(
     if motion[STEP] == 0.0:
         motion[STEP] = pace.dt
     spans, taken, written, early = no_spans(), 0, 0, 1e-9 * pace.dt
+    before = motion.copy()
     while True:
         status, spans = find_tips(body, ground, motion, spans, work)
         left = until - motion[TIME]
         over = status != TIME_LIMIT or left <= early
-        before, rests = motion.copy(), False
+        before[:], rests = motion, False
         if not over:
             if pace.error > 0.0:
                 rests, status, spans = _take_adaptively(

@@ -145,7 +145,7 @@ def new_motion(pose: Floats, twist: Floats) -> Floats:
     return motion
 
 
-@compiled
+@inlined
 def _place(edges: Floats, motion: Floats, out: Floats) -> None:
     """Move the edges to the pose."""
     x, y, theta = motion[POSE], motion[POSE + 1], motion[POSE + 2]
@@ -163,7 +163,7 @@ def is_over(body: Body, ground: Ground, motion: Floats, work: Work) -> bool:
     return holds(ground.lattice, work.edges)
 
 
-@compiled
+@inlined
 def find_tips(
     body: Body, ground: Ground, motion: Floats, spans: Spans, work: Work
 ) -> tuple[int, Spans]:
@@ -177,7 +177,7 @@ def find_tips(
     return NOT_LIFTED if normal > ground.lift else TIME_LIMIT, spans
 
 
-@compiled
+@inlined
 def _normal(body: Body, tips: Tips) -> float:
     """Return the weight on a tip of share 1."""
     carried = tips.numbers[COUNT] > 0 and tips.sums[SHARE] > 0.0

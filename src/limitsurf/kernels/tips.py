@@ -277,18 +277,20 @@ def _share_along_outline(edges: Floats, lattice: Lattice, tips: Tips) -> None:
     rows, columns = lattice.active.shape
     half, active = 0.5 * lattice.tip_width, lattice.active
     x0, y0, pitch = lattice.origin_x, lattice.origin_y, lattice.pitch
+    per_pitch = 1.0 / pitch
     for i in range(edges.shape[0]):
         edge = edges[i, 0], edges[i, 1], edges[i, 2], edges[i, 3]
         low, high = min(edge[1], edge[3]) - half, max(edge[1], edge[3]) + half
         slope = (edge[2] - edge[0]) / (edge[3] - edge[1]) if edge[1] != edge[3] else 0.0
-        for r in range(first_site(low, y0, pitch), last_site(high, y0, pitch, rows) + 1):
+        for r in range(first_site(low, y0, per_pitch), last_site(high, y0, per_pitch, rows) + 1):
             left, right = reach_in_row(edge, slope, y0 + pitch * r, half)
-            first, last = first_site(left, x0, pitch), last_site(right, x0, pitch, columns)
-            for c in range(first, last + 1):
+            c = first_site(left, x0, per_pitch)
+            while c < columns and x0 + pitch * c <= right:
                 if active[r, c]:
                     distance = distance_to_edge(x0 + pitch * c, y0 + pitch * r, edge)
                     if distance < half:
                         _share_tip(lattice, tips, r, c, distance / lattice.tip_width)
+                c += 1
 
 
 @inlined
