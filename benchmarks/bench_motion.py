@@ -228,9 +228,8 @@ def against_cvxpy():
     fast = (long - short) / count
     apart = np.abs((path.final_pose - end) / [part.circumradius, part.circumradius, 1]).max()
     print(f"N = {path.tips[-1]}: {1e6 * fast:.1f} us a step, cvxpy {1e6 * slow:.0f} us, ", end="")
-    print(
-        f"{slow / fast:.0f}x, of it solving {1e6 * solve:.0f} us, {solve / fast:.0f}x; poses after {count} steps differ by {apart:.0e} (circumradii, rad)"
-    )
+    print(f"{slow / fast:.0f}x, of it solving {1e6 * solve:.0f} us, {solve / fast:.0f}x;")
+    print(f"poses after {count} steps differ by {apart:.0e} (circumradii, rad)")
 
 
 def many(count=10_000):
