@@ -203,6 +203,8 @@ def test_trajectory_as_a_dataset(array64, paper_t):
     assert data.poses.sel(pose="theta").values == pytest.approx(path.poses[:, 2])
     assert data.attrs["outcome"] == str(path.outcome)
     assert "frames" in repr(path)
+    assert repr(path.energy).startswith(f"EnergyBalance(work {path.energy.work[-1]:.3g} J; gained")
+    assert np.array_equal(path.certificates, path.error_bounds)
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,9 @@ def test_threads_and_seeds(drive, paper_t):
 def test_an_interrupted_run_leaves_a_readable_file(drive, paper_t, tmp_path):
     starts, file = random_starts(4, 0, 1e-3), tmp_path / "runs.nc"
     starts = np.concatenate([starts, [[1.0, 0.0, 0.0]]])  # off the array: the last one fails
-    with pytest.raises(InputError, match="edge of the array"):
+    with pytest.raises(
+        InputError, match="poses: puts the part over the edge of the array in run 4"
+    ):
         simulate_many(paper_t, drive, starts, save=file, jobs=1, progress=True, tolerance=1e-3)
     with xarray.open_dataset(file, engine="scipy") as data:
         assert data.sizes["run"] == 4

@@ -14,6 +14,7 @@ from rich.progress import track
 
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
+from limitsurf.motion.engine import Engine
 from limitsurf.motion.engines import Drive, engine_of
 from limitsurf.motion.netcdf import as_target, write_netcdf
 from limitsurf.motion.simulate import simulate
@@ -145,7 +146,7 @@ def simulate_many(
     target, kept = as_target(save), {"duration": duration, "twist": speed, **options}
     threads = -1 if type(jobs) is int and jobs == -1 else as_count("jobs", jobs)
     motions = Parallel(n_jobs=threads, prefer="threads", return_as="generator")(
-        delayed(engine)(start, speed) for start in starts
+        delayed(_move)(engine, k, start, speed) for k, start in enumerate(starts)
     )
     shown = track(motions, "Simulating", total=len(starts)) if progress else motions
     ends: list[Trajectory] = []
@@ -160,6 +161,17 @@ def simulate_many(
         if target is not None and ends:
             write_netcdf(_runs(part, drive, kept, starts, ends).to_dataset(), target)
     return _runs(part, drive, kept, starts, ends)
+
+
+def _move(engine: Engine, run: int, start: Array, twist: Array) -> Trajectory:
+    """Return the motion of one run; errors say which."""
+    try:
+        return engine(start, twist)
+    except InputError as error:
+        if error.argument == "pose":
+            what = f"{error.problem} in run {run}"
+            raise InputError("poses", what, value=error.value, remedy=error.remedy) from error
+        raise
 
 
 def _runs(

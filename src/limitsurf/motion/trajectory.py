@@ -118,6 +118,17 @@ class EnergyBalance:
         gained = self.kinetic - self.kinetic[0] - self.work
         return np.asarray(gained + self.friction + self.drag + self.numerical)
 
+    def __repr__(self) -> str:
+        """Return the balance at the end."""
+        names = ("friction", "drag", "numerical")
+        lost = ", ".join(f"{name} {getattr(self, name)[-1]:.3g}" for name in names)
+        gained = self.kinetic[-1] - self.kinetic[0]
+        left = np.abs(self.residual).max()
+        return (
+            f"EnergyBalance(work {self.work[-1]:.3g} J; gained {gained:.3g}, lost to {lost}; "
+            f"residual at most {left:.1g})"
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
@@ -168,6 +179,11 @@ class Trajectory:
         """Pose at the end."""
         last: Array = self.poses[-1]
         return last
+
+    @property
+    def certificates(self) -> Array:
+        """Certified errors of the frictional load at the recorded times: `error_bounds` [N]."""
+        return self.error_bounds
 
     @property
     def held(self) -> bool:
