@@ -17,6 +17,7 @@ def test_it_names_what_it_compiled(capsys):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)  # one process, so that none overwrites the other's index of the cache
 def test_afterwards_nothing_is_compiled(tmp_path):
     """In a new process the same calls find everything in the cache: no new files."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
