@@ -56,7 +56,7 @@ $(READY): pyproject.toml constraints.txt
 	if [ -z "$$found" ]; then \
 	  echo "limitsurf: needs Python 3.11 or newer, found:$${old:- none}; install one, or run make PYTHON=/path/to/python3" >&2; exit 1; \
 	fi; \
-	echo "Building $(VENV) with $$found (once, two or three minutes)"; \
+	echo "Building $(VENV) with $$found (once, about four minutes)"; \
 	rm -rf $(VENV) && "$$found" -m venv $(VENV)
 	@PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet --editable ".[test]"
 	@$(BIN)/limitsurf warm-up

@@ -82,11 +82,11 @@ def _resonators() -> None:
     sweep_resonators(resonator, 3e-8, 50.0, 0.3)
 
 
-#: What is compiled side by side: groups that share few kernels.
+#: What is compiled side by side, the longest first: groups that share few kernels.
 GROUPS: dict[str, Callable[[], None]] = {
-    "convex sets": _sets,
     "contacts and arrays": _contacts,
     "motion": _motion,
+    "convex sets": _sets,
     "resonators": _resonators,
 }
 
@@ -100,7 +100,7 @@ def _timed(name: str) -> tuple[str, float]:
 def warm_up(
     processes: Annotated[int, typer.Option(min=1, help="Processes to compile in.")] = 2,
 ) -> None:
-    """Compile all kernels once; about a minute after installation, a second later on."""
+    """Compile all kernels once; some minutes after installation, a second later on."""
     import limitsurf.kernels.compile  # noqa: F401 - drops stale caches before processes start
 
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
