@@ -10,6 +10,7 @@ from scipy.constants import g
 from limitsurf.actuators.activation import Activation, squeeze_activation
 from limitsurf.actuators.actuator_array import load_array
 from limitsurf.actuators.carrying import carry
+from limitsurf.actuators.force_fields import squeeze_field
 from limitsurf.contacts.oscillating_contact import OscillatingContact
 from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
@@ -197,6 +198,7 @@ def test_no_drag_is_for_inertial_motion_only(array64, square):
         ({"tolerance": 0.0}, "tolerance"),
         ({"drive": 3}, "drive"),
         ({"drive": lambda t: None}, "drive"),
+        ({"drive": squeeze_field(0.0)}, "drive"),
         ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1)}, "duration"),
         ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "tilt": (0.01, 0.0)}, "duration"),
         ({"load": LoadTable(lambda t: (1e-9 * t, 0, 0), 0.1), "duration": 0.2}, "load"),

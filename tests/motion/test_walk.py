@@ -298,3 +298,10 @@ def test_bad_arguments_are_named(changed, argument):
 
 def test_whole_numbers_of_numpy_are_whole_numbers():
     assert len(walk(legs(1.0), 1.0, drag=DRAG, frames=np.int64(3)).times) == 4
+
+
+def test_the_papers_rule_is_the_default():
+    feet = ContactSet([[0.0, 1.0], [0.0, -1.0]], 0.1, [[1.0, 0.0], [0.6, 0.0]])
+    path, steady = walk(feet, 2.0), steady_walk(feet)
+    assert path.twists[0] == pytest.approx(steady.load)
+    assert path.final_pose == pytest.approx(walk(feet, 2.0, drag=(1, 1, 1)).final_pose)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,8 +42,20 @@ def engine_of(part: Part, drive: Drive, duration: float | None, **options: Any) 
     if isinstance(first, DensityField):
         return _in_field(part, drive, limit, chosen)
     chosen.refuse("arrays", "friction")
-    asked = drive(0.0) if callable(drive) else first
+    asked = _asked(drive) if callable(drive) else first
     return on_array(part, drive, as_activation(asked), limit, chosen)  # type: ignore[arg-type]
+
+
+def _asked(drive: Callable[[float], Any]) -> Any:
+    """Return what a function of time gives at its beginning."""
+    try:
+        return drive(0.0)
+    except Exception as error:
+        raise InputError(
+            "drive",
+            "fails as a function of time",
+            remedy="for a field of points, give a DensityField or `activate` an array with it",
+        ) from error
 
 
 def _first(drive: Drive) -> Any:

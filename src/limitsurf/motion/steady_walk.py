@@ -87,7 +87,9 @@ class SteadyWalk:
 
 
 def steady_walk(
-    contacts: ContactSet, drag: ArrayLike, load: ArrayLike = (0.0, 0.0, 0.0)
+    contacts: ContactSet,
+    drag: ArrayLike = (1.0, 1.0, 1.0),
+    load: ArrayLike = (0.0, 0.0, 0.0),
 ) -> SteadyWalk:
     r"""Return how a body walks on feet that are fixed to it (the paper's "upside-down" array).
 

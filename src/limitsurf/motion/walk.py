@@ -28,7 +28,7 @@ def walk(
     contacts: ContactSet | Schedule[ContactSet],
     duration: float,
     *,
-    drag: ArrayLike,
+    drag: ArrayLike = (1.0, 1.0, 1.0),
     pose: ArrayLike = (0.0, 0.0, 0.0),
     load: ArrayLike = (0.0, 0.0, 0.0),
     frames: int = 200,
@@ -45,7 +45,8 @@ def walk(
     duration : float
         Time limit [s].
     drag : (3,) float
-        Viscous drag of the body, body axes [N s/m, N s/m, N m s].
+        Viscous drag of the body, body axes [N s/m, N s/m, N m s]. By default the paper's own rule:
+        the velocity is the load, in SI units.
     pose : (3,) float
         Start ``(x, y, theta)`` of the reference point [m, m, rad].
     load : (3,) float
