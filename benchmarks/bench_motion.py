@@ -26,7 +26,8 @@ from limitsurf.kernels.contact_problem import Problem, new_best, new_setting, se
 from limitsurf.kernels.contact_sum import solve_contact_sum
 from limitsurf.kernels.contact_totals import new_table
 from limitsurf.kernels.row_spans import no_spans
-from limitsurf.kernels.tips import move_tips, new_tips
+from limitsurf.kernels.tip_list import new_tips
+from limitsurf.kernels.tips import move_tips
 from limitsurf.motion.array_steps import ground_of
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.motion.starts import random_starts

@@ -9,16 +9,8 @@ from limitsurf.kernels.contact_pass import Contacts
 from limitsurf.kernels.contact_problem import second_moments
 from limitsurf.kernels.lattice import Lattice
 from limitsurf.kernels.row_spans import no_spans
-from limitsurf.kernels.tips import (
-    COUNT,
-    PUSH_M,
-    PUSH_X,
-    SHARE,
-    moments_of,
-    move_tips,
-    new_tips,
-    tip_data,
-)
+from limitsurf.kernels.tip_list import COUNT, PUSH_M, PUSH_X, SHARE, moments_of, new_tips, tip_data
+from limitsurf.kernels.tips import move_tips
 
 PITCH, ORIGIN = 0.1, (-1.55, -1.45)
 ROWS, COLUMNS = 30, 32

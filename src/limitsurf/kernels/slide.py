@@ -33,7 +33,7 @@ from limitsurf.kernels.slide_step import (
     is_over,
     take_step,
 )
-from limitsurf.kernels.tips import COUNT, new_tips
+from limitsurf.kernels.tip_list import COUNT, new_tips
 
 __all__ = ["FRAME", "slide"]
 

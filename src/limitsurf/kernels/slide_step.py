@@ -34,7 +34,7 @@ from limitsurf.kernels.contact_sum import COLD, solve_contact_sum
 from limitsurf.kernels.lattice import Lattice, holds
 from limitsurf.kernels.load_table import VARIES, Load, load_at
 from limitsurf.kernels.row_spans import Spans
-from limitsurf.kernels.tips import (
+from limitsurf.kernels.tip_list import (
     COUNT,
     PUSH_M,
     PUSH_X,
@@ -42,9 +42,9 @@ from limitsurf.kernels.tips import (
     SHARE,
     Tips,
     moments_of,
-    move_tips,
     tip_data,
 )
+from limitsurf.kernels.tips import move_tips
 from limitsurf.kernels.vectors import Vector, along, dot, scaled
 
 __all__ = [

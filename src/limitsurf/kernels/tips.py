@@ -1,23 +1,18 @@
-r"""The active tips under a moving part, kept up to date at the cost of what changes.
+"""The active tips under a moving part, kept up to date at the cost of what changes.
 
 A tip has a small width b. Its share of the load rises linearly from 0 to 1 while the outline
 crosses it: ``share = clip(1/2 + d/b, 0, 1)`` with d the signed distance to the outline (positive
 inside). This is the continuous form of "a contact under the outline carries any share between
 none and its own", so forces stay continuous while the part moves.
-
-Tips are listed with positions about an *anchor*, a point that stays while the part moves a short
-way, so that nothing is written but the tips at the outline. The sums over all tips that a step
-needs are kept as well: of the shares s, of s r, s |r|^2, and the load of the pushes s d.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from limitsurf.kernels.compile import Floats, Ints, compiled, inlined
+from limitsurf.kernels.compile import Floats, compiled, inlined
 from limitsurf.kernels.lattice import (
     Lattice,
     distance_to_edge,
@@ -26,77 +21,24 @@ from limitsurf.kernels.lattice import (
     reach_in_row,
 )
 from limitsurf.kernels.row_spans import Spans, row_spans, span_sites
-from limitsurf.kernels.symmetric3 import Symmetric
+from limitsurf.kernels.tip_list import (
+    AGE,
+    BORDER,
+    COUNT,
+    Tips,
+    add_tip,
+    add_up,
+    make_room,
+    remove_tip,
+    set_share,
+    tip_data,
+)
 
-__all__ = [
-    "COUNT",
-    "PUSH_M",
-    "PUSH_X",
-    "PUSH_Y",
-    "SHARE",
-    "Tips",
-    "moments_of",
-    "move_tips",
-    "new_tips",
-    "tip_data",
-]
-
-COUNT, ROOM, BORDER, AGE = 0, 1, 2, 3
-SHARE, SHARE_X, SHARE_Y, SHARE_R2, PUSH_X, PUSH_Y, PUSH_M = 0, 1, 2, 3, 4, 5, 6
+__all__ = ["move_tips"]
 
 _FRESH = 64  # moves after which sums are added up anew, for rounding
 _FAR = 0.25  # the anchor is left behind by that much of the part's reach
 _MOST = float(np.nextafter(1.0, 0.0))  # a partial share is less than 1: it is listed once
-_NOWHERE = 1e3  # where free places of the list lie, in reaches: never near a centre of rotation
-
-
-class Tips(NamedTuple):
-    """A list of tips: rows, columns, and in `buffer` x, y and share of the first `ROOM` places.
-
-    `slot` finds a site in the list, -1 if it is not; `border` are sites ``row, column, outside``
-    of partial share; `sums` and `numbers` are named above.
-    """
-
-    rows: Ints
-    columns: Ints
-    slot: Ints
-    border: Ints
-    buffer: Floats
-    anchor: Floats
-    sums: Floats
-    numbers: Ints
-    reach: float
-
-
-@compiled
-def new_tips(lattice: Lattice, reach: float) -> Tips:
-    """Return an empty list for a part of circumradius `reach`."""
-    n = lattice.active.size
-    return Tips(
-        np.empty(n, np.int32),
-        np.empty(n, np.int32),
-        np.full(lattice.active.shape, -1, np.int32),
-        np.empty((n, 3), np.int32),
-        np.empty(3 * n),
-        np.full(2, np.inf),
-        np.zeros(7),
-        np.zeros(4, np.int32),
-        reach,
-    )
-
-
-@inlined
-def tip_data(tips: Tips) -> Floats:
-    """Return x, y about the anchor and share, (3, room); free places have share 0, far away."""
-    room = tips.numbers[ROOM]
-    return tips.buffer[: 3 * room].reshape(3, room)
-
-
-@compiled
-def moments_of(tips: Tips) -> Symmetric:
-    """Return ``sum s G G'``, as `second_moments` does."""
-    s = tips.sums
-    return s[SHARE], 0.0, s[SHARE], -s[SHARE_Y], s[SHARE_X], s[SHARE_R2]
 
 
 @compiled
@@ -128,7 +70,7 @@ def move_tips(lattice: Lattice, edges: Floats, x: float, y: float, tips: Tips, o
         _share_along_outline(edges, lattice, tips)
     tips.numbers[AGE] += 1
     if tips.numbers[AGE] >= _FRESH:
-        _add_up(lattice, tips)
+        add_up(lattice, tips)
     return new
 
 
@@ -144,10 +86,10 @@ def _list_anew(lattice: Lattice, x: float, y: float, tips: Tips, spans: Spans) -
     running = 0
     for i in range(sites.shape[0]):
         running += 1 if lattice.active[sites[i, 0], sites[i, 1]] else 0
-    _make_room(tips, running)
+    make_room(tips, running)
     for i in range(sites.shape[0]):
         if lattice.active[sites[i, 0], sites[i, 1]]:
-            _add(lattice, tips, sites[i, 0], sites[i, 1], 1.0)
+            add_tip(lattice, tips, sites[i, 0], sites[i, 1], 1.0)
 
 
 @inlined
@@ -179,84 +121,9 @@ def _change(a: Spans, b: Spans, lattice: Lattice, tips: Tips, enter: bool) -> No
 @inlined
 def _enter_or_leave(lattice: Lattice, tips: Tips, r: int, c: int, enter: bool) -> None:
     if enter:
-        _add(lattice, tips, r, c, 1.0)
+        add_tip(lattice, tips, r, c, 1.0)
     else:
-        _remove(lattice, tips, r, c)
-
-
-@compiled
-def _make_room(tips: Tips, needed: int) -> None:
-    """Make room for `needed` tips and some more; the places of tips stay."""
-    room = min(needed + needed // 64 + 8, tips.rows.shape[0])
-    count = tips.numbers[COUNT]
-    before = tip_data(tips)[:, :count].copy()
-    tips.numbers[ROOM] = room
-    data = tip_data(tips)
-    data[:, :count] = before
-    data[:2, count:] = _NOWHERE * tips.reach
-    data[2, count:] = 0.0
-
-
-@inlined
-def _weigh(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> tuple[float, float]:
-    """Add a tip to the sums, with a share that may be negative; return where it is."""
-    x = lattice.origin_x + lattice.pitch * c - tips.anchor[0]
-    y = lattice.origin_y + lattice.pitch * r - tips.anchor[1]
-    fx, fy = share * lattice.directions[r, c, 0], share * lattice.directions[r, c, 1]
-    s = tips.sums
-    s[SHARE] += share
-    s[SHARE_X] += share * x
-    s[SHARE_Y] += share * y
-    s[SHARE_R2] += share * (x * x + y * y)
-    s[PUSH_X] += fx
-    s[PUSH_Y] += fy
-    s[PUSH_M] += x * fy - y * fx
-    return x, y
-
-
-@compiled
-def _add_up(lattice: Lattice, tips: Tips) -> None:
-    """Add up the sums anew."""
-    tips.sums[:] = 0.0
-    tips.numbers[AGE] = 0
-    share = tip_data(tips)[2]
-    for k in range(tips.numbers[COUNT]):
-        _weigh(lattice, tips, tips.rows[k], tips.columns[k], share[k])
-
-
-@inlined
-def _add(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> None:
-    k = tips.numbers[COUNT]
-    if k == tips.numbers[ROOM]:
-        _make_room(tips, k + 1)
-    data = tip_data(tips)
-    data[0, k], data[1, k] = _weigh(lattice, tips, r, c, share)
-    data[2, k] = share
-    tips.rows[k], tips.columns[k] = r, c
-    tips.slot[r, c] = k
-    tips.numbers[COUNT] = k + 1
-
-
-@inlined
-def _remove(lattice: Lattice, tips: Tips, r: int, c: int) -> None:
-    """Remove a tip; the last of the list takes its place."""
-    data = tip_data(tips)
-    k, last = tips.slot[r, c], tips.numbers[COUNT] - 1
-    _weigh(lattice, tips, r, c, -data[2, k])
-    data[:, k] = data[:, last]
-    tips.rows[k], tips.columns[k] = tips.rows[last], tips.columns[last]
-    tips.slot[tips.rows[k], tips.columns[k]] = k
-    tips.slot[r, c] = -1
-    data[0, last] = data[1, last] = _NOWHERE * tips.reach
-    data[2, last] = 0.0
-    tips.numbers[COUNT] = last
-
-
-@inlined
-def _set_share(lattice: Lattice, tips: Tips, k: int, share: float) -> None:
-    shares = tip_data(tips)[2]
-    _weigh(lattice, tips, tips.rows[k], tips.columns[k], share - shares[k])
-    shares[k] = share
+        remove_tip(lattice, tips, r, c)
 
 
 @inlined
@@ -265,9 +132,9 @@ def _drop_shares(lattice: Lattice, tips: Tips) -> None:
     for i in range(tips.numbers[BORDER]):
         r, c = tips.border[i, 0], tips.border[i, 1]
         if tips.border[i, 2] > 0:
-            _remove(lattice, tips, r, c)
+            remove_tip(lattice, tips, r, c)
         else:
-            _set_share(lattice, tips, tips.slot[r, c], 1.0)
+            set_share(lattice, tips, tips.slot[r, c], 1.0)
     tips.numbers[BORDER] = 0
 
 
@@ -303,8 +170,8 @@ def _share_tip(lattice: Lattice, tips: Tips, r: int, c: int, distance: float) ->
         tips.border[i, 0], tips.border[i, 1], tips.border[i, 2] = r, c, 1 if k < 0 else 0
         tips.numbers[BORDER] = i + 1
     if k < 0:
-        _add(lattice, tips, r, c, 0.5 - distance)
+        add_tip(lattice, tips, r, c, 0.5 - distance)
     elif share >= 0.5:  # inside
-        _set_share(lattice, tips, k, min(share, 0.5 + distance, _MOST))
+        set_share(lattice, tips, k, min(share, 0.5 + distance, _MOST))
     else:
-        _set_share(lattice, tips, k, max(share, 0.5 - distance))
+        set_share(lattice, tips, k, max(share, 0.5 - distance))

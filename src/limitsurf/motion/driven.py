@@ -24,7 +24,6 @@ from limitsurf.kernels.slide_step import (
 from limitsurf.motion.schedule import Schedule
 from limitsurf.motion.time_scales import refuse_heavy
 from limitsurf.motion.trajectory import (
-    EnergyBalance,
     EventKind,
     MotionEvent,
     Outcome,
@@ -157,19 +156,8 @@ class _Log:
         return waits
 
     def trajectory(self, motion: Array, outcome: Outcome) -> Trajectory:
-        table = np.concatenate(self.rows)
-        return Trajectory(
-            times=table[:, 0].copy(),
-            poses=table[:, 1:4].copy(),
-            twists=table[:, 4:7].copy(),
-            loads=table[:, 7:10].copy(),
-            error_bounds=table[:, 10].copy(),
-            tips=table[:, 11].astype(np.int64),
-            outcome=outcome,
-            worst_error=float(motion[WORST]),
-            energy=EnergyBalance(*table[:, 12:17].T.copy()),
-            events=tuple(self.events),
-        )
+        frames = np.concatenate(self.rows)
+        return Trajectory.from_frames(frames, outcome, float(motion[WORST]), self.events)
 
 
 def _pieces(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from pathlib import Path
@@ -168,6 +169,32 @@ class Trajectory:
     worst_error: float
     energy: EnergyBalance
     events: tuple[MotionEvent, ...] = ()
+
+    @classmethod
+    def from_frames(
+        cls,
+        frames: Array,
+        outcome: Outcome,
+        worst_error: float,
+        events: Iterable[MotionEvent] = (),
+    ) -> Trajectory:
+        """Return the record of frames (k, 17), as the stepping kernels write them.
+
+        Columns are time, pose, twist, load, error bound, contacts, and the energies: kinetic, work,
+        friction, drag, numerical.
+        """
+        return cls(
+            times=frames[:, 0].copy(),
+            poses=frames[:, 1:4].copy(),
+            twists=frames[:, 4:7].copy(),
+            loads=frames[:, 7:10].copy(),
+            error_bounds=frames[:, 10].copy(),
+            tips=frames[:, 11].astype(np.int64),
+            outcome=outcome,
+            worst_error=worst_error,
+            energy=EnergyBalance(*frames[:, 12:17].T.copy()),
+            events=tuple(events),
+        )
 
     @property
     def duration(self) -> float:

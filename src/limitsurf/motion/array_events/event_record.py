@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from limitsurf.motion.array_events.event_state import State, View
 from limitsurf.motion.array_events.tip_scene import Scene
-from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
+from limitsurf.motion.trajectory import EventKind, MotionEvent, Outcome, Trajectory
 
 __all__ = ["Record"]
 
@@ -49,16 +49,6 @@ class Record:
 
     def trajectory(self, outcome: Outcome) -> Trajectory:
         """Return the record."""
-        table = np.array(self._rows)
-        return Trajectory(
-            times=table[:, 0].copy(),
-            poses=table[:, 1:4].copy(),
-            twists=table[:, 4:7].copy(),
-            loads=table[:, 7:10].copy(),
-            error_bounds=table[:, 10].copy(),
-            tips=table[:, 11].astype(np.int64),
-            outcome=outcome,
-            worst_error=float(max(self._worst, table[:, 10].max()) / self._scene.weight),
-            energy=EnergyBalance(*table[:, 12:17].T.copy()),
-            events=tuple(self.events),
-        )
+        frames = np.array(self._rows)
+        worst = float(max(self._worst, frames[:, 10].max()) / self._scene.weight)
+        return Trajectory.from_frames(frames, outcome, worst, self.events)
