@@ -157,7 +157,7 @@ def _ground(verification: Verification, visible: int) -> list[Any]:
 def _pushes(activation: Activation) -> NDArray[np.int64]:
     """Return which way each pixel pushes: 0 to 3 for +x, -x, +y, -y."""
     array = activation.array
-    sites = array.nominal_directions * activation.active[..., None]
+    sites = array.nominal_directions * activation.running[..., None]
     pixels = sites.reshape(array.rows, 2, array.columns, 2, 2).sum(axis=(1, 3))
     x, y = pixels[..., 0], pixels[..., 1]
     return np.select([x > 0, x < 0, y > 0], [0, 1, 2], 3)

@@ -169,7 +169,7 @@ def _arrows(axes: Axes, places: Array, arrows: Array, width: float, zorder: floa
 def _running(activation: Activation, box: Box) -> tuple[Array, Array]:
     """Return places [m] and pushes of the running tips in a box, (k, 2) each."""
     array = activation.array
-    rows, columns = np.nonzero(activation.active)
+    rows, columns = np.nonzero(activation.running)
     places = np.array(array.first_site) + array.site_pitch * np.column_stack([columns, rows])
     left, bottom, right, top = box
     x, y = places.T
