@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 
 from limitsurf.actuators.activation import squeeze_activation
 from limitsurf.actuators.density_field import DensityField
@@ -209,3 +210,27 @@ def test_events_on_an_array_go_with_schedules_slopes_and_loads(array64):
     tip = OscillatingContact(0.5, [1.0, 0.0], [1.0, -1.0], 1.0)
     with pytest.raises(InputError, match="tip: is not for events"):
         simulate(part, plan, start, 0.1, method="events", tip=tip)
+
+
+@pytest.mark.parametrize("inside", ["alone", "in turn"])
+def test_interrupted_events_leave_a_readable_file(array64, paper_t, tmp_path, monkeypatch, inside):
+    """A load that fails after a while stands for the user's interrupt."""
+    file, drive = tmp_path / "run.nc", squeeze_activation(array64, 0.0)
+    plan = drive if inside == "alone" else Schedule([(0.0, drive), (0.01, drive)])
+    table, asked = LoadTable(lambda t: (1e-12 * t, 0.0, 0.0), 2.0), []
+
+    def interrupt(self, time):
+        asked.append(time)
+        if len(asked) > 2000:
+            raise KeyboardInterrupt
+        return np.zeros(3)
+
+    monkeypatch.setattr(LoadTable, "__call__", interrupt)
+    options = {"mode": "quasi-static", "method": "events", "load": table}
+    with pytest.raises(KeyboardInterrupt):
+        simulate(paper_t, plan, (2e-4, 8e-4, 1.2), 2.0, save=file, **options)
+    with xarray.open_dataset(file, engine="scipy") as data:
+        assert data.attrs["outcome"] == "interrupted"
+        assert data.sizes["time"] > 2
+        assert data.time[-1] > 0.01
+        assert np.isfinite(data.poses.values).all()

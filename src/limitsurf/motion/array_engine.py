@@ -14,7 +14,7 @@ from limitsurf.kernels.slide_step import Body, Pace
 from limitsurf.motion.array_events.event_motion import event_motion
 from limitsurf.motion.array_steps import ArraySteps
 from limitsurf.motion.drag import air_film_drag
-from limitsurf.motion.driven import Driven, DrivenMotion
+from limitsurf.motion.driven import Driven, DrivenMotion, Watch
 from limitsurf.motion.engine import Engine, InTurn, frames_of, load_from
 from limitsurf.motion.load_table import LoadTable
 from limitsurf.motion.loads import Gravity, gravity, with_gravity
@@ -91,7 +91,9 @@ def _by_events(
     if options.tolerance is not None:
         given["tolerance"] = options.tolerance
 
-    def move(activation: Activation, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+    def move(
+        activation: Activation, q: Array, v: Array, begin: float, time: float, watch: Watch | None
+    ) -> Trajectory:
         return event_motion(
             part,
             activation,
@@ -103,6 +105,7 @@ def _by_events(
             load=load_from(table, begin),
             weight=weight.normal,
             frames=frames_of(options.frames, time, duration),
+            watch=watch,
             **given,
         )
 

@@ -43,7 +43,7 @@ class InTurn:
         if isinstance(self.drive, Schedule):
             assert self.duration is not None
             return in_turn(self.drive.pieces(self.duration), self.move, pose, twist, watch)
-        trajectory = self.move(self.drive, pose, twist, 0.0, self.duration)
+        trajectory = self.move(self.drive, pose, twist, 0.0, self.duration, watch)
         if watch is not None:
             watch(trajectory.duration, None)
         return trajectory

@@ -13,7 +13,7 @@ from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.array_engine import on_array
-from limitsurf.motion.driven import Driven, as_activation
+from limitsurf.motion.driven import Driven, Watch, as_activation
 from limitsurf.motion.engine import Engine, InTurn, frames_of, load_from
 from limitsurf.motion.feet import feet_motion
 from limitsurf.motion.field_motion import field_motion
@@ -77,7 +77,9 @@ def _on_feet(part: Part, drive: Drive, duration: float | None, options: Options)
     table = with_gravity(gravity(part, options.tilt), options.load, duration)
     given: dict[str, Any] = {"method": options.method} if options.method is not None else {}
 
-    def move(feet: ContactSet, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+    def move(
+        feet: ContactSet, q: Array, v: Array, begin: float, time: float, _: Watch | None
+    ) -> Trajectory:
         return feet_motion(
             part,
             feet,
@@ -109,7 +111,9 @@ def _in_field(part: Part, drive: Drive, duration: float | None, options: Options
     if options.tolerance is not None:
         given["tolerance"] = options.tolerance
 
-    def move(field: DensityField, q: Array, v: Array, begin: float, time: float) -> Trajectory:
+    def move(
+        field: DensityField, q: Array, v: Array, begin: float, time: float, _: Watch | None
+    ) -> Trajectory:
         return field_motion(
             part,
             field,

@@ -23,8 +23,8 @@ __all__ = ["in_turn", "joined"]
 Array = NDArray[np.float64]
 Drive = TypeVar("Drive")
 
-#: Moves a part on a drive from pose and twist at a time for a duration.
-Move = Callable[[Drive, Array, Array, float, Any], Trajectory]
+#: Moves a part on a drive from pose and twist at a time for a duration, watched.
+Move = Callable[[Drive, Array, Array, float, Any, Watch | None], Trajectory]
 
 
 def in_turn(
@@ -41,7 +41,7 @@ def in_turn(
     parts: list[tuple[float, Trajectory]] = []
     try:
         for begin, end, drive in pieces:
-            found = move(drive, pose, twist, begin, end - begin)
+            found = move(drive, pose, twist, begin, end - begin, _within(parts, begin, watch))
             parts.append((begin, found))
             if watch is not None:
                 watch(begin + found.duration, None)
@@ -55,6 +55,18 @@ def in_turn(
             watch(record.duration, record)
         raise
     return joined(parts)
+
+
+def _within(parts: list[tuple[float, Trajectory]], begin: float, watch: Watch | None) -> Watch:
+    """Return what watches one drive of several: it keeps an interrupted record as the last part."""
+
+    def see(time: float, interrupted: Trajectory | None) -> None:
+        if interrupted is not None:
+            parts.append((begin, interrupted))
+        elif watch is not None:
+            watch(begin + time, None)
+
+    return see
 
 
 def joined(parts: Sequence[tuple[float, Trajectory]]) -> Trajectory:

@@ -10,6 +10,7 @@ from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
 from limitsurf.motion.array_events.event_run import EventRun
 from limitsurf.motion.array_events.tip_scene import Load, build_scene
+from limitsurf.motion.driven import Watch
 from limitsurf.motion.trajectory import Outcome, Trajectory
 from limitsurf.sets.arguments import as_array, as_number
 
@@ -32,6 +33,7 @@ def event_motion(
     tolerance: float = 1e-9,
     max_events: int = 100_000,
     frames: int = 200,
+    watch: Watch | None = None,
 ) -> Trajectory:
     r"""Return the motion of a part on an activated array, event by event.
 
@@ -67,6 +69,8 @@ def event_motion(
         Events after which to give up.
     frames : int
         About how many frames to record besides those at events.
+    watch : callable, optional
+        Called with the time now and then, and with the record so far if the motion is interrupted.
 
     Returns
     -------
@@ -104,7 +108,12 @@ def event_motion(
     if not scene.inertial:
         moving[:] = 0.0
     run = EventRun(scene, start, moving, limit, float(tolerance), limit / frames)
-    outcome = run.until_the_end(max_events)
+    try:
+        outcome = run.until_the_end(max_events, watch)
+    except BaseException:
+        if watch is not None and run.record.started:
+            watch(run.time, run.record.trajectory(Outcome.INTERRUPTED))
+        raise
     if outcome is Outcome.NOT_LIFTED and np.isfinite(run.normal):
         pixel, voltage = drive.array.pixel, drive.array.voltage
         raise PartTooHeavy(run.normal, scene.lift, voltage, pixel.lifting_voltage(run.normal))

@@ -23,6 +23,11 @@ class Record:
         self._worst, self._told = 0.0, -1
         self.events: list[MotionEvent] = []
 
+    @property
+    def started(self) -> bool:
+        """Whether there is a frame."""
+        return bool(self._rows)
+
     def see(self, view: View) -> bool:
         """Take notice of an error bound; return whether something happened since the last one."""
         self._worst = max(self._worst, view.answer.bound)

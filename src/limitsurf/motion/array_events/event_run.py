@@ -16,6 +16,7 @@ from limitsurf.motion.array_events.event_state import Path, State, Steps, Stretc
 from limitsurf.motion.array_events.regroup import Regrouping
 from limitsurf.motion.array_events.tip_scene import Scene
 from limitsurf.motion.array_events.touching import close_tips, gone_round, tips_under, touching_tips
+from limitsurf.motion.driven import Watch
 from limitsurf.motion.trajectory import EventKind, Outcome
 from limitsurf.tolerances import REST_SPEED
 
@@ -75,7 +76,12 @@ class EventRun:
         touching = touching_tips(scene, pose, [], scene.near)
         self._carriers = self._groups.first(self._state, tips_under(scene, pose), touching)
 
-    def until_the_end(self, max_events: int) -> Outcome:
+    @property
+    def time(self) -> float:
+        """How far the motion has come [s]."""
+        return self._state.time
+
+    def until_the_end(self, max_events: int, watch: Watch | None = None) -> Outcome:
         """Go on until the part rests, leaves, sinks or the time is up; return which."""
         while True:
             stretch = Stretch(self._scene, self._state, self._carriers)
@@ -86,6 +92,8 @@ class EventRun:
                 self._frame(state, view, outcome)
             if outcome is not None:
                 return outcome
+            if watch is not None:
+                watch(state.time, None)
             if self._cuts >= max_events:
                 raise TooManyEvents(max_events, state.time)
             if self._advance(stretch, view):
