@@ -31,6 +31,7 @@ __all__ = [
     "new_tips",
     "remove_tip",
     "set_share",
+    "share_of",
     "tip_data",
 ]
 
@@ -80,6 +81,20 @@ def tip_data(tips: Tips) -> Floats:
     """Return x, y about the anchor and share, (3, room); free places have share 0, far away."""
     room = tips.numbers[ROOM]
     return tips.buffer[: 3 * room].reshape(3, room)
+
+
+@inlined
+def share_of(tips: Tips, k: int) -> float:
+    """Return the share of the tip in place k."""
+    share: float = tips.buffer[2 * tips.numbers[ROOM] + k]
+    return share
+
+
+@inlined
+def _place(tips: Tips, k: int, x: float, y: float, share: float) -> None:
+    """Write a place of the list, without the view of `tip_data`, which takes longer than this."""
+    data, room = tips.buffer, tips.numbers[ROOM]
+    data[k], data[room + k], data[2 * room + k] = x, y, share
 
 
 @compiled
@@ -135,9 +150,8 @@ def add_tip(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> None:
     k = tips.numbers[COUNT]
     if k == tips.numbers[ROOM]:
         make_room(tips, k + 1)
-    data = tip_data(tips)
-    data[0, k], data[1, k] = _weigh(lattice, tips, r, c, share)
-    data[2, k] = share
+    x, y = _weigh(lattice, tips, r, c, share)
+    _place(tips, k, x, y, share)
     tips.rows[k], tips.columns[k] = r, c
     tips.slot[r, c] = k
     tips.numbers[COUNT] = k + 1
@@ -146,21 +160,19 @@ def add_tip(lattice: Lattice, tips: Tips, r: int, c: int, share: float) -> None:
 @inlined
 def remove_tip(lattice: Lattice, tips: Tips, r: int, c: int) -> None:
     """Remove a tip; the last of the list takes its place."""
-    data = tip_data(tips)
     k, last = tips.slot[r, c], tips.numbers[COUNT] - 1
-    _weigh(lattice, tips, r, c, -data[2, k])
-    data[:, k] = data[:, last]
+    _weigh(lattice, tips, r, c, -share_of(tips, k))
+    data, room = tips.buffer, tips.numbers[ROOM]
+    _place(tips, k, data[last], data[room + last], data[2 * room + last])
     tips.rows[k], tips.columns[k] = tips.rows[last], tips.columns[last]
     tips.slot[tips.rows[k], tips.columns[k]] = k
     tips.slot[r, c] = -1
-    data[0, last] = data[1, last] = _NOWHERE * tips.reach
-    data[2, last] = 0.0
+    _place(tips, last, _NOWHERE * tips.reach, _NOWHERE * tips.reach, 0.0)
     tips.numbers[COUNT] = last
 
 
 @inlined
 def set_share(lattice: Lattice, tips: Tips, k: int, share: float) -> None:
     """Change the share of the tip in place k."""
-    shares = tip_data(tips)[2]
-    _weigh(lattice, tips, tips.rows[k], tips.columns[k], share - shares[k])
-    shares[k] = share
+    _weigh(lattice, tips, tips.rows[k], tips.columns[k], share - share_of(tips, k))
+    tips.buffer[2 * tips.numbers[ROOM] + k] = share

@@ -31,7 +31,7 @@ from limitsurf.kernels.tip_list import (
     make_room,
     remove_tip,
     set_share,
-    tip_data,
+    share_of,
 )
 
 __all__ = ["move_tips"]
@@ -164,7 +164,7 @@ def _share_along_outline(edges: Floats, lattice: Lattice, tips: Tips) -> None:
 def _share_tip(lattice: Lattice, tips: Tips, r: int, c: int, distance: float) -> None:
     """Set the share of a tip at a distance, in tip widths, from an edge: the nearest counts."""
     k = tips.slot[r, c]
-    share = tip_data(tips)[2, k] if k >= 0 else 0.0
+    share = share_of(tips, k) if k >= 0 else 0.0
     if k < 0 or share == 1.0:
         i = tips.numbers[BORDER]
         tips.border[i, 0], tips.border[i, 1], tips.border[i, 2] = r, c, 1 if k < 0 else 0
