@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from numbers import Integral
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,15 +25,14 @@ from limitsurf.kernels.feet_run import (
 )
 from limitsurf.kernels.feet_steps import feet_steps
 from limitsurf.motion.load_table import LoadLike, LoadTable
+from limitsurf.motion.options import Method, Mode, check_choice
 from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_number, as_positive
 from limitsurf.sets.contact_sum import ContactSum
 
 __all__ = ["feet_motion"]
 
 Array = NDArray[np.float64]
-Mode = Literal["inertial", "quasi-static"]
-Method = Literal["steps", "events"]
 
 _KINDS = (EventKind.STICK, EventKind.SLIP, EventKind.START, EventKind.REST)
 _EVENTS, _STEPS = 20_000, 20_000_000
@@ -150,21 +148,13 @@ def _checked(
     duration: float, frames: int, tolerance: float | None, mode: str, method: str
 ) -> tuple[float, int, float]:
     """Return duration, frames and tolerance as numbers."""
-    for name, value, known in (
-        ("mode", mode, get_args(Mode)),
-        ("method", method, get_args(Method)),
-    ):
-        if value not in known:
-            raise InputError(name, "is unknown", value=value, remedy=f"use {' or '.join(known)}")
-    limit = as_number("duration", duration)
-    if not (0.0 < limit < np.inf):
-        raise InputError("duration", "must be positive", value=duration)
-    if not isinstance(frames, Integral) or frames < 1:
-        raise InputError("frames", "must be a whole number from 1 on", value=frames)
+    check_choice("mode", mode, get_args(Mode))
+    check_choice("method", method, get_args(Method))
+    limit, count = as_positive("duration", duration), as_count("frames", frames)
     tol = as_number("tolerance", _TOLERANCE[method] if tolerance is None else tolerance)
     if not 1e-14 <= tol < 1.0:
         raise InputError("tolerance", "must lie between 1e-14 and 1", value=tolerance)
-    return limit, int(frames), tol
+    return limit, count, tol
 
 
 def _places(contacts: ContactSet, mode: str, method: str) -> Array:
@@ -226,9 +216,7 @@ def _state(q: Array, v: Array, body: Array, force: float, span: float, mode: str
 
 def _steps(time_step: float, limit: float, frames: int) -> int:
     """Return the number of equal steps between two frames."""
-    step = as_number("time_step", time_step)
-    if not (0.0 < step < np.inf):
-        raise InputError("time_step", "must be positive", value=time_step)
+    step = as_positive("time_step", time_step)
     if limit / step > _STEPS:
         raise InputError("time_step", f"needs {limit / step:.3g} steps", remedy="raise it")
     return max(1, int(np.ceil(limit / (frames * step) - 1e-9)))

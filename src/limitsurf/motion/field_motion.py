@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from limitsurf.kernels.field_steps import ENERGIES, FRAME, field_steps
 from limitsurf.motion.field_ode import field_ode
 from limitsurf.motion.field_problem import FieldProblem, field_problem
 from limitsurf.motion.load_table import LoadLike, LoadTable
+from limitsurf.motion.options import Method, Mode, check_choice
 from limitsurf.motion.trajectory import EnergyBalance, EventKind, MotionEvent, Outcome, Trajectory
 from limitsurf.sets.arguments import as_array, as_count, as_positive
 from limitsurf.tolerances import CONTACT_SUM
@@ -34,11 +35,11 @@ def field_motion(
     duration: float | None = None,
     *,
     twist: ArrayLike = (0.0, 0.0, 0.0),
-    mode: Literal["inertial", "quasi-static"] = "inertial",
+    mode: Mode = "inertial",
     drag: ArrayLike | None = None,
     friction: UniformFriction | None = None,
     load: LoadLike = None,
-    method: Literal["steps", "events"] = "events",
+    method: Method = "events",
     time_step: float | None = None,
     tolerance: float = 1e-9,
     frames: int = 200,
@@ -109,8 +110,7 @@ def field_motion(
     ('REST', array([0., 0.]))
     """
     start, speed = as_array("pose", pose, 3), as_array("twist", twist, 3)
-    if method not in ("steps", "events"):
-        raise InputError("method", "is unknown", value=method, remedy="use steps or events")
+    check_choice("method", method, get_args(Method))
     count = as_count("frames", frames)
     problem = field_problem(part, field, start, speed, mode, drag, friction, load)
     limit = as_positive("duration", 60.0 * problem.time if duration is None else duration)

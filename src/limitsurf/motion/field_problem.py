@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from limitsurf.kernels.field_steps import FieldBody, uniform_step
 from limitsurf.kernels.project_uniform import ANSWER
 from limitsurf.kernels.uniform_friction import new_room, uniform_patch
 from limitsurf.motion.load_table import LoadLike, LoadTable
+from limitsurf.motion.options import Mode, check_choice
 from limitsurf.sets.arguments import as_array
 from limitsurf.tolerances import CONTACT_SUM, REST_SPEED
 
@@ -124,8 +125,7 @@ def field_problem(
             raise InputError(name, f"is no {kind.__name__}", value=value)
     if not isinstance(friction, UniformFriction | None):
         raise InputError("friction", "is no UniformFriction", value=friction)
-    if mode not in ("inertial", "quasi-static"):
-        raise InputError("mode", "is unknown", value=mode, remedy="use inertial or quasi-static")
+    check_choice("mode", mode, get_args(Mode))
     viscous = np.array(as_array("drag", np.zeros(3) if drag is None else drag, 3))
     if viscous.min() < 0.0:
         raise InputError("drag", "has negative entries", value=viscous.tolist())

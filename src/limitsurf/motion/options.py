@@ -14,7 +14,7 @@ from limitsurf.errors import InputError
 from limitsurf.motion.load_table import LoadLike
 from limitsurf.sets.arguments import as_array, as_count, as_positive
 
-__all__ = ["Method", "Mode", "Options", "checked_drag"]
+__all__ = ["Method", "Mode", "Options", "check_choice", "checked_drag"]
 
 Array = NDArray[np.float64]
 Mode = Literal["inertial", "quasi-static"]
@@ -39,8 +39,8 @@ class Options:
     def __post_init__(self) -> None:
         """Check what needs nothing else."""
         if self.method is not None:
-            _choice("method", self.method, get_args(Method))
-        _choice("mode", self.mode, get_args(Mode))
+            check_choice("method", self.method, get_args(Method))
+        check_choice("mode", self.mode, get_args(Mode))
         as_count("frames", self.frames)
         for name in ("time_step", "tolerance"):
             if getattr(self, name) is not None:
@@ -70,6 +70,7 @@ def checked_drag(given: ArrayLike, mode: Mode) -> Array:
     return drag
 
 
-def _choice(name: str, value: str, known: tuple[str, ...]) -> None:
+def check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
+    """Raise InputError unless a value is one of those known."""
     if value not in known:
         raise InputError(name, "is unknown", value=value, remedy=f"use {' or '.join(known)}")

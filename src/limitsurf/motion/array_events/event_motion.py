@@ -11,8 +11,9 @@ from limitsurf.geometry.part import Part
 from limitsurf.motion.array_events.event_run import EventRun
 from limitsurf.motion.array_events.tip_scene import Load, build_scene
 from limitsurf.motion.driven import Watch
+from limitsurf.motion.options import Mode
 from limitsurf.motion.trajectory import Outcome, Trajectory
-from limitsurf.sets.arguments import as_array, as_number
+from limitsurf.sets.arguments import as_array, as_count, as_number, as_positive
 
 __all__ = ["event_motion"]
 
@@ -26,7 +27,7 @@ def event_motion(
     duration: float,
     *,
     twist: ArrayLike = (0.0, 0.0, 0.0),
-    mode: str = "quasi-static",
+    mode: Mode = "quasi-static",
     drag: ArrayLike,
     load: Load = None,
     weight: float | None = None,
@@ -98,18 +99,16 @@ def event_motion(
     """
     start = np.array(as_array("pose", pose, 3))
     moving = np.array(as_array("twist", twist, 3))
-    limit = _positive("duration", duration)
+    limit = as_positive("duration", duration)
     if not 0.0 < as_number("tolerance", tolerance) < 1.0:
         raise InputError("tolerance", "must lie between 0 and 1", value=tolerance)
-    for name, count in (("frames", frames), ("max_events", max_events)):
-        if count < 1:
-            raise InputError(name, "must be at least 1", value=count)
+    count, most = as_count("frames", frames), as_count("max_events", max_events)
     scene = build_scene(part, drive, drag, load, mode, weight)
     if not scene.inertial:
         moving[:] = 0.0
-    run = EventRun(scene, start, moving, limit, float(tolerance), limit / frames)
+    run = EventRun(scene, start, moving, limit, float(tolerance), limit / count)
     try:
-        outcome = run.until_the_end(max_events, watch)
+        outcome = run.until_the_end(most, watch)
     except BaseException:
         if watch is not None and run.record.started:
             watch(run.time, run.record.trajectory(Outcome.INTERRUPTED))
@@ -118,10 +117,3 @@ def event_motion(
         pixel, voltage = drive.array.pixel, drive.array.voltage
         raise PartTooHeavy(run.normal, scene.lift, voltage, pixel.lifting_voltage(run.normal))
     return run.record.trajectory(outcome)
-
-
-def _positive(name: str, value: float) -> float:
-    number = as_number(name, value)
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(name, "must be positive", value=value)
-    return number

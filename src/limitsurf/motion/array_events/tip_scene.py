@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,7 @@ from scipy.constants import g
 from limitsurf.actuators.activation import Activation
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
+from limitsurf.motion.options import Mode, check_choice, checked_drag
 from limitsurf.sets.arguments import as_array
 
 __all__ = ["Load", "Scene", "build_scene"]
@@ -129,12 +131,11 @@ def build_scene(
     drive: Activation,
     drag: ArrayLike,
     load: Load,
-    mode: str,
+    mode: Mode,
     weight: float | None = None,
 ) -> Scene:
     """Return the scene of a part on an activated array; `mode` as in `event_motion`."""
-    if mode not in ("inertial", "quasi-static"):
-        raise InputError("mode", "is unknown", value=mode, remedy="use inertial or quasi-static")
+    check_choice("mode", mode, get_args(Mode))
     array, pixel = drive.array, drive.array.pixel
     rows, columns = np.nonzero(drive.running)
     origin, pitch = np.array(array.first_site), array.site_pitch
@@ -161,7 +162,7 @@ def build_scene(
         weight=part.mass * g if weight is None else weight,
         lift=pixel.vertical_force(array.voltage),
         mass=np.array([part.mass, part.mass, part.inertia]),
-        drag=_checked_drag(drag, mode),
+        drag=_even_drag(drag, mode),
         inertial=mode == "inertial",
         load=_load(load),
         steady=not callable(load),
@@ -181,10 +182,8 @@ def _following(edges: Array) -> NDArray[np.int64]:
     return following
 
 
-def _checked_drag(drag: ArrayLike, mode: str) -> Array:
-    checked = as_array("drag", drag, 3)
-    if checked.min() < 0.0 or (mode == "quasi-static" and checked.min() == 0.0):
-        raise InputError("drag", "must be positive", value=tuple(checked))
+def _even_drag(drag: ArrayLike, mode: Mode) -> Array:
+    checked = checked_drag(drag, mode)
     if checked[0] != checked[1]:
         raise InputError("drag", "must be the same along x and y", value=tuple(checked))
     return checked
