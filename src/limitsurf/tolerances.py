@@ -16,6 +16,7 @@ __all__ = [
     "FLAT_MOMENT",
     "GIVEN_LOAD",
     "LINE_MARGIN",
+    "NEUTRAL",
     "REST_SPEED",
     "SHARED_LOAD",
     "TIP_AT_REST",
@@ -40,6 +41,10 @@ FLATTEN: Final = 2e-4
 
 #: A plan whose margin is below this is no plan: rounding alone could break it.
 LINE_MARGIN: Final = 1e-9
+
+#: A part whose critical angle [rad] is below this is neutral in practice: a force direction off by
+#: six seconds of arc outweighs every moment. Polygons of a disk or of a Zindler curve are.
+NEUTRAL: Final = 3e-5
 
 #: Slower than this, relative to the speed that the drive can give, is at rest. Friction lets an
 #: overdamped part approach the edge of its resting set exponentially, without ever reaching it.

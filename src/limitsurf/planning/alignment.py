@@ -14,16 +14,21 @@ import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError, ModelError, NoPlan
 from limitsurf.geometry.part import Part
-from limitsurf.planning.squeeze_function import SqueezeFunction, squeeze_function
-from limitsurf.planning.turn_function import turn_function
+from limitsurf.planning.squeeze_function import SqueezeFunction
+from limitsurf.planning.step_function import Model, step_function
 from limitsurf.tolerances import LINE_MARGIN
+
+if TYPE_CHECKING:
+    from limitsurf.actuators.actuator_array import ActuatorArray
+    from limitsurf.planning.robustness import Robustness
 
 __all__ = ["AlignmentPlan", "plan_alignment"]
 
@@ -46,7 +51,13 @@ class AlignmentPlan:
     period : float
         The end orientation is known modulo this [rad].
     squeeze : SqueezeFunction
-        What the plan is made for.
+        What each step does to an orientation.
+    part : Part
+        The part.
+    model : str
+        How the steps are executed; see `plan_alignment`.
+    mobility_ratio : float
+        Ratio of mobilities of rotation and translation that the model assumes; see `IdealSqueeze`.
     """
 
     lines: Array
@@ -54,18 +65,33 @@ class AlignmentPlan:
     final: float
     period: float
     squeeze: SqueezeFunction
+    part: Part
+    model: Model = "squeeze"
+    mobility_ratio: float = 1.0
 
     def predict(self, phi: ArrayLike) -> Array:
-        """Return the orientation, in [0, pi), where the plan leaves a part that starts at phi."""
+        """Return the orientation, reduced, where the plan leaves a part that starts at phi."""
         orientation = np.asarray(phi, dtype=np.float64)
         for line in self.lines:
             orientation = self.squeeze(orientation - line) + line
-        return np.mod(orientation, np.pi)
+        return np.mod(orientation, self.squeeze.modulus)
+
+    def robustness(self, array: ActuatorArray) -> Robustness:
+        """Return what the errors of a real array leave of the plan; see `Robustness`."""
+        from limitsurf.planning.robustness import robustness
+
+        return robustness(self, array)
+
+    def expected_duration(self, drive: ActuatorArray) -> float:
+        """Return the expected time of the whole plan on a drive [s]."""
+        from limitsurf.planning.duration import expected_duration
+
+        return expected_duration(self, drive)
 
     def to_json(self) -> str:
         """Return the plan as JSON text; angles in radians."""
         record = {
-            "format": "limitsurf alignment plan 1",
+            "format": "limitsurf alignment plan 2",
             "unit": "rad",
             "lines": self.lines.tolist(),
             "margins": [m if np.isfinite(m) else None for m in self.margins.tolist()],
@@ -73,7 +99,16 @@ class AlignmentPlan:
             "period": self.period,
             "squeeze": {
                 "breaks": self.squeeze.breaks.tolist(),
+                "ends": self.squeeze.ends.tolist(),
                 "images": self.squeeze.images.tolist(),
+                "modulus": self.squeeze.modulus,
+            },
+            "model": self.model,
+            "mobility_ratio": self.mobility_ratio,
+            "part": {
+                "outline": shapely.to_wkt(self.part.polygon, rounding_precision=17),
+                "areal_density": self.part.areal_density,
+                "name": self.part.name,
             },
         }
         return json.dumps(record, indent=2, allow_nan=False) + "\n"
@@ -105,8 +140,15 @@ class AlignmentPlan:
 def _plan_from(record: dict[str, Any]) -> AlignmentPlan:
     squeeze = SqueezeFunction(
         np.array(record["squeeze"]["breaks"], dtype=np.float64),
+        np.array(record["squeeze"]["ends"], dtype=np.float64),
         np.array(record["squeeze"]["images"], dtype=np.float64),
         float(record["period"]),
+        float(record["squeeze"]["modulus"]),
+    )
+    part = Part(
+        shapely.from_wkt(record["part"]["outline"]),
+        record["part"]["areal_density"],
+        name=record["part"]["name"],
     )
     margins = [np.inf if margin is None else float(margin) for margin in record["margins"]]
     return AlignmentPlan(
@@ -115,6 +157,9 @@ def _plan_from(record: dict[str, Any]) -> AlignmentPlan:
         float(record["final"]),
         float(record["period"]),
         squeeze,
+        part,
+        record["model"],
+        float(record["mobility_ratio"]),
     )
 
 
@@ -128,7 +173,9 @@ class _Arc:
     span: float
 
 
-def plan_alignment(part: Part, *, min_margin: float = 0.0) -> AlignmentPlan:
+def plan_alignment(
+    part: Part, *, model: Model = "squeeze", min_margin: float = 0.0, mobility_ratio: float = 1.0
+) -> AlignmentPlan:
     """Return the shortest plan of squeezes that aligns a part, with the largest margin.
 
     Parameters
@@ -152,7 +199,7 @@ def plan_alignment(part: Part, *, min_margin: float = 0.0) -> AlignmentPlan:
     """
     if not (np.isfinite(min_margin) and min_margin >= 0.0):
         raise InputError("min_margin", "must be at least 0 rad", value=min_margin)
-    squeeze = squeeze_function(turn_function(part))
+    squeeze = step_function(part, model, mobility_ratio)
     if len(squeeze.breaks) == 0:
         raise NoPlan("the part is neutral: squeezing does not turn it, so nothing aligns it", 0.0)
     arcs = _arcs(squeeze)
@@ -164,7 +211,7 @@ def plan_alignment(part: Part, *, min_margin: float = 0.0) -> AlignmentPlan:
             f"at most {np.degrees(reachable):.4g} deg is reachable",
             reachable,
         )
-    return _forward_plan(_widen(chain, arcs, squeeze.period), squeeze)
+    return _forward_plan(_widen(chain, arcs, squeeze.period), squeeze, part, model, mobility_ratio)
 
 
 def _arcs(squeeze: SqueezeFunction) -> list[_Arc]:
@@ -225,7 +272,9 @@ def _reachable_margin(arcs: list[_Arc], period: float) -> float:
     return best
 
 
-def _forward_plan(chain: list[_Arc], squeeze: SqueezeFunction) -> AlignmentPlan:
+def _forward_plan(
+    chain: list[_Arc], squeeze: SqueezeFunction, part: Part, model: Model, mobility_ratio: float
+) -> AlignmentPlan:
     """Turn each line so that the images of one arc fall into the middle of the next."""
     lines, margins = [0.0], [np.inf]
     for early, late in zip(chain[::-1], chain[-2::-1], strict=False):
@@ -234,5 +283,12 @@ def _forward_plan(chain: list[_Arc], squeeze: SqueezeFunction) -> AlignmentPlan:
         margins.append(margin)
     final = np.mod(lines[-1] + chain[0].first_image, squeeze.period)
     return AlignmentPlan(
-        np.mod(lines, np.pi), np.array(margins), float(final), squeeze.period, squeeze
+        np.mod(lines, squeeze.modulus),
+        np.array(margins),
+        float(final),
+        squeeze.period,
+        squeeze,
+        part,
+        model,
+        mobility_ratio,
     )

@@ -17,36 +17,40 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class SqueezeFunction:
-    """A step function on the orientations modulo pi: ``[breaks[i], breaks[i+1]) -> images[i]``.
+    """A step function on orientations: ``[breaks[i], ends[i]) -> images[i]``.
 
     Attributes
     ----------
-    breaks : (k,) float
-        Unstable orientations, ascending in [0, pi) [rad]; the last step ends at
-        ``breaks[0] + pi``. Empty for a neutral part, which stays as it is.
+    breaks, ends : (k,) float
+        Left and right ends of the steps, ascending, the first in [0, modulus) [rad]. Where a step
+        ends before the next one begins, starts between the two may come to either image. Empty
+        for a neutral part, which stays as it is.
     images : (k,) float
-        Stable orientations, ``breaks[i] < images[i]``, not reduced modulo pi [rad].
+        Orientations at rest, in the order of the steps, not reduced [rad].
     period : float
         The smallest turn that leaves the function unchanged [rad]: squeezing cannot tell
         orientations apart that differ by it.
+    modulus : float
+        Orientations count modulo this [rad]: pi towards a line without direction, 2 pi where the
+        part comes from a known side of the line.
     """
 
     breaks: Array
+    ends: Array
     images: Array
     period: float
+    modulus: float = np.pi
 
     def __call__(self, phi: ArrayLike) -> Array:
-        """Return the orientation after a squeeze towards a line at world angle 0, in [0, pi)."""
-        reduced = np.mod(np.asarray(phi, dtype=np.float64), np.pi)
+        """Return the orientation after a squeeze towards a line at world angle 0, reduced.
+
+        Between two steps, where either image may come, that of the step before.
+        """
+        reduced = np.mod(np.asarray(phi, dtype=np.float64), self.modulus)
         if len(self.breaks) == 0:
             return reduced
         step = np.searchsorted(self.breaks, reduced, side="right") - 1  # -1: the last step
-        return np.mod(self.images[step], np.pi)
-
-    @property
-    def ends(self) -> Array:
-        """Right ends of the steps."""
-        return np.append(self.breaks[1:], self.breaks[:1] + np.pi)
+        return np.mod(self.images[step], self.modulus)
 
     def __repr__(self) -> str:
         """Return the steps in degrees."""
@@ -73,10 +77,11 @@ def squeeze_function(turn: TurnFunction) -> SqueezeFunction:
     SqueezeFunction([90.00, 270.00) -> 180.00; period 180 deg)
     """
     if turn.neutral:
-        return SqueezeFunction(np.empty(0), np.empty(0), np.pi)
+        return SqueezeFunction(np.empty(0), np.empty(0), np.empty(0), np.pi)
     before_first = turn.stable < turn.unstable[0]
     images = np.sort(np.where(before_first, turn.stable + np.pi, turn.stable))
-    return SqueezeFunction(turn.unstable, images, _period(turn.unstable, images))
+    ends = np.append(turn.unstable[1:], turn.unstable[:1] + np.pi)
+    return SqueezeFunction(turn.unstable, ends, images, _period(turn.unstable, images))
 
 
 def _period(breaks: Array, images: Array) -> float:
