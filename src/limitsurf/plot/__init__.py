@@ -4,6 +4,7 @@ Every function returns a plotly figure, with units on its axes: ``draw_part(part
 `animate` returns a matplotlib animation.
 """
 
+from limitsurf.plot.alignment import draw_alignment
 from limitsurf.plot.animation import animate
 from limitsurf.plot.errors import draw_errors
 from limitsurf.plot.limit_curve import draw_limit_curve
@@ -16,6 +17,7 @@ from limitsurf.plot.turn import draw_turn_function
 __all__ = [
     "animate",
     "animate_runs",
+    "draw_alignment",
     "draw_errors",
     "draw_limit_curve",
     "draw_limit_surface",
