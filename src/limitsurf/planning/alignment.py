@@ -16,7 +16,6 @@ from limitsurf.planning.plan_json import read_plan, write_plan
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.step_function import Model, step_function
 from limitsurf.planning.turn_function import turn_function
-from limitsurf.sets.arguments import as_positive
 
 if TYPE_CHECKING:
     from limitsurf.actuators.actuator_array import ActuatorArray
@@ -131,10 +130,9 @@ def plan_alignment(
     >>> plan_alignment(t)
     AlignmentPlan(lines at 0.00, 45.00 deg, margin 33.67 deg)
     >>> plan = plan_alignment(t, lines=8, goal=0.0)
-    >>> plan, plan.predict([1.0, 2.0])
+    >>> plan, plan.final
     """
-    as_positive("mobility_ratio", mobility_ratio)
-    squeeze = step_function(part, model, float(mobility_ratio))
+    squeeze = step_function(part, model, mobility_ratio)
     if squeeze.steps == 0:
         raise _neutral(part)
     try:
