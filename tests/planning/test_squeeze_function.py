@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import shapely
@@ -98,3 +100,11 @@ def test_turn_and_diameter_functions_make_step_functions_alike():
     part = Part([(0, 0), (2, 0), (2, 1), (0, 1)])
     assert squeeze_function(turn_function(part)).images == pytest.approx([np.pi])
     assert squeeze_function(diameter_function(part)).images == pytest.approx([np.pi / 2, np.pi])
+
+
+@pytest.mark.parametrize(("order", "period"), [(5, np.pi / 5), (10, np.pi / 5), (1, np.pi)])
+def test_symmetric_parts_with_triple_roots_keep_their_period(order, period):
+    """A triple root is known to 1e-5 only; whether steps are the same, the part's symmetry says."""
+    breaks, _, images = repeated(np.random.default_rng(3), 2, 5, 2e-5)
+    turn = SimpleNamespace(stable=images, unstable=breaks, neutral=False, symmetry_order=order)
+    assert squeeze_function(turn).period == pytest.approx(period)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,6 +14,8 @@ from limitsurf.tolerances import ANGLE
 __all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
 
 Array = NDArray[np.float64]
+
+_TRIPLE = 1e-4  # rad; triple roots of U', where two equilibria merge, are known to about 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +84,10 @@ class EquilibriaOfSqueeze(Protocol):
     def neutral(self) -> bool:
         """Whether there are neither."""
 
+    @property
+    def symmetry_order(self) -> int:
+        """Order of the part's rotational symmetry."""
+
 
 def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     """Return the squeeze function that belongs to a turn function.
@@ -102,16 +109,22 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     before_first = turn.stable < turn.unstable[0]
     images = np.sort(np.where(before_first, turn.stable + np.pi, turn.stable))
     ends = np.append(turn.unstable[1:], turn.unstable[:1] + np.pi)
-    return SqueezeFunction(
-        turn.unstable, ends, images, smallest_period(turn.unstable, ends, images, np.pi)
-    )
+    steps = turn.unstable, ends, images
+    period, rough = (smallest_period(*steps, np.pi, tolerance) for tolerance in (ANGLE, _TRIPLE))
+    if rough < period:  # if the part is symmetric, the steps are, however well they are known
+        order = turn.symmetry_order
+        copies = math.gcd(round(np.pi / rough), order if order % 2 else order // 2)
+        period = min(period, np.pi / copies)
+    return SqueezeFunction(*steps, period)
 
 
-def smallest_period(breaks: Array, ends: Array, images: Array, modulus: float) -> float:
+def smallest_period(
+    breaks: Array, ends: Array, images: Array, modulus: float, tolerance: float = ANGLE
+) -> float:
     """Return the smallest ``modulus / d`` under which the steps map onto one another.
 
     Each divisor d of their number costs one pass over the steps. Two steps whose places differ by
-    less than `tolerances.ANGLE` are taken for images of one another.
+    at most `tolerance` are taken for images of one another.
     """
     k = len(breaks)
     for copies in range(k, 1, -1):
@@ -119,7 +132,7 @@ def smallest_period(breaks: Array, ends: Array, images: Array, modulus: float) -
             continue
         shift, turn = k // copies, modulus / copies
         same = all(
-            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= ANGLE
+            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= tolerance
             for x in (breaks, ends, images)
         )
         if same:
