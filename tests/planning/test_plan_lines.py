@@ -184,6 +184,9 @@ def test_nothing_to_turn_and_bad_input():
 def test_bands_may_leave_no_plan():
     breaks, images = np.array([0.0, 1.5]), np.array([0.7, 2.2])
     squeeze = SqueezeFunction(breaks, breaks + 0.1, images, np.pi)
-    with pytest.raises(NoPlan, match=r"0\.1.* deg|widest arc") as caught:
+    with pytest.raises(
+        NoPlan, match=r"has 5\.7.* of 180 deg; from the gaps .*push-squeeze"
+    ) as caught:
         plan_lines(squeeze)
     assert caught.value.reachable_margin == 0.0
+    assert caught.value.plan is None

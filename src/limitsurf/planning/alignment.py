@@ -129,8 +129,10 @@ def plan_alignment(
     >>> t = Part([(0, 0), (1, 0), (1, 3), (2.5, 3), (2.5, 4), (-1.5, 4), (-1.5, 3), (0, 3)])
     >>> plan_alignment(t)
     AlignmentPlan(lines at 0.00, 45.00 deg, margin 33.67 deg)
-    >>> plan = plan_alignment(t, lines=8, goal=0.0)
-    >>> plan, plan.final
+    >>> plan_alignment(t, lines=8, goal=0.0)
+    AlignmentPlan(lines at 45.00, 90.00 deg, margin 33.67 deg)
+    >>> plan_alignment(t, goal=0.5).predict([1.0, 2.0])
+    array([0.5, 0.5])
     """
     squeeze = step_function(part, model, mobility_ratio)
     if squeeze.steps == 0:

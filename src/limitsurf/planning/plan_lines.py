@@ -57,9 +57,9 @@ def plan_lines(
     >>> rectangle = Part([(0, 0), (2, 0), (2, 1), (0, 1)])
     >>> squeeze = squeeze_function(diameter_function(rectangle))
     >>> plan_lines(squeeze)
-    LinePlan(lines at 0.00, 71.57 deg, margin 18.43 deg)
+    LinePlan(lines at 0.00, 135.00 deg, margin 18.43 deg)
     >>> plan_lines(squeeze, lines=4, goal=0.0)
-    LinePlan(lines at 45.00, 90.00 deg, margin 18.43 deg)
+    LinePlan(lines at 45.00, 0.00 deg, margin 18.43 deg)
     """
     margin = as_number("min_margin", min_margin)
     if not (np.isfinite(margin) and margin >= 0.0):
