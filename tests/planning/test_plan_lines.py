@@ -2,29 +2,12 @@
 
 import numpy as np
 import pytest
-from step_twins import naive_chain, random_steps, shortest_by_sets
+from step_twins import ends_of, naive_chain, random_steps, shortest_by_sets
 
 from limitsurf.errors import InputError, NoPlan
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.squeeze_function import SqueezeFunction
 from limitsurf.tolerances import LINE_MARGIN
-
-
-def ends_of(plan, errors, starts, rng):
-    """Return orientations at the end, over the plan's final, modulo its period.
-
-    Between two steps, either image comes by chance.
-    """
-    squeeze, phi = plan.squeeze, starts
-    n = len(squeeze.breaks)
-    for line, error in zip(plan.lines, errors, strict=True):
-        reduced = np.mod(phi - line - error - squeeze.breaks[0], squeeze.modulus)
-        reduced += squeeze.breaks[0]
-        step = np.searchsorted(squeeze.breaks, reduced, side="right") - 1
-        step += (reduced >= squeeze.ends[step]) & (rng.uniform(size=len(phi)) < 0.5)
-        phi = squeeze.images[step % n] + squeeze.modulus * (step // n) + line + error
-    off = phi - errors[-1] - plan.final
-    return off - plan.period * np.round(off / plan.period)
 
 
 def length_or_none(squeeze):
