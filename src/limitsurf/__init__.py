@@ -71,6 +71,10 @@ if TYPE_CHECKING:
     from limitsurf.motion.walk import walk as walk
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
+    from limitsurf.planning.diameter_function import DiameterFunction as DiameterFunction
+    from limitsurf.planning.diameter_function import diameter_function as diameter_function
+    from limitsurf.planning.line_plan import LinePlan as LinePlan
+    from limitsurf.planning.plan_lines import plan_lines as plan_lines
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
     from limitsurf.planning.squeeze_function import squeeze_function as squeeze_function
     from limitsurf.planning.turn_function import TurnFunction as TurnFunction
@@ -105,11 +109,13 @@ _HOME = {
     "ConvexSet": "sets.convex_set",
     "DensityField": "actuators.density_field",
     "DensityPiece": "actuators.density_piece",
+    "DiameterFunction": "planning.diameter_function",
     "Ellipsoid": "sets.ellipsoid",
     "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
     "HPolytope": "sets.h_polytope",
     "LatticeContacts": "contacts.lattice_contacts",
+    "LinePlan": "planning.line_plan",
     "LinearImage": "sets.linear_image",
     "LoadShare": "contacts.load_sharing",
     "LoadTable": "motion.load_table",
@@ -143,6 +149,7 @@ _HOME = {
     "carry": "actuators.carrying",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
+    "diameter_function": "planning.diameter_function",
     "direction_errors": "actuators.field_error",
     "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
@@ -155,6 +162,7 @@ _HOME = {
     "load_array": "actuators.actuator_array",
     "load_error": "actuators.field_error",
     "plan_alignment": "planning.alignment",
+    "plan_lines": "planning.plan_lines",
     "polygonal_contact": "contacts.coulomb",
     "project_many": "contacts.project_many",
     "push": "motion.pushing",
