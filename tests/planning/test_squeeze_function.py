@@ -44,6 +44,18 @@ def test_breaks_map_to_the_right():
     assert squeeze(before) == pytest.approx(np.mod(np.roll(squeeze.images, 1), np.pi))
 
 
+def test_following_counts_turns():
+    """The part turns by less than a step, and to where the reduced function says."""
+    squeeze = squeeze_function(turn_function(Part(CASES[NAMES.index("T")]["vertices"])))
+    phi = np.linspace(-7.0, 9.0, 1001)
+    ends = squeeze.follow(phi)
+    assert np.all(np.abs(ends - phi) < np.max(squeeze.ends - squeeze.breaks))
+    assert angle_distance(np.mod(ends, np.pi), squeeze(phi)) < 1e-12
+    assert np.all(np.diff(ends) >= -1e-12)
+    assert squeeze.follow(squeeze.breaks[0]) == squeeze.images[0]
+    assert squeeze.follow(squeeze.breaks[0] - 1e-9) == pytest.approx(squeeze.images[-1] - np.pi)
+
+
 def test_images_are_fixed_and_arrays_broadcast():
     squeeze = squeeze_function(turn_function(Part(CASES[NAMES.index("blob_m3")]["vertices"])))
     images = np.mod(squeeze.images, np.pi)

@@ -54,11 +54,16 @@ class SqueezeFunction:
 
         Between two steps, where either image may come, that of the step before.
         """
-        reduced = np.mod(np.asarray(phi, dtype=np.float64), self.modulus)
+        return np.mod(self.follow(phi), self.modulus)
+
+    def follow(self, phi: ArrayLike) -> Array:
+        """Return the orientation after a squeeze, not reduced: phi and how far the part turns."""
+        start = np.asarray(phi, dtype=np.float64)
         if len(self.breaks) == 0:
-            return reduced
-        step = np.searchsorted(self.breaks, reduced, side="right") - 1  # -1: the last step
-        return np.mod(self.images[step], self.modulus)
+            return start
+        turns = self.modulus * np.floor((start - self.breaks[0]) / self.modulus)
+        step = np.searchsorted(self.breaks, start - turns, side="right") - 1
+        return np.asarray(self.images[np.maximum(step, 0)] + turns)
 
     def __repr__(self) -> str:
         """Return the steps in degrees."""

@@ -64,7 +64,7 @@ def _stages(
     stages: list[tuple[float | None, Array]] = [(None, np.array([0.0, 0.0, start]))]
     phi = start
     for line in plan.lines:
-        phi = float(plan.squeeze(phi - line)) + float(line)
+        phi = float(plan.squeeze.follow(phi - line)) + float(line)
         offset, _ = turn.median(phi - float(line))
         normal = np.array([-np.sin(line), np.cos(line)])
         stages.append((float(line), np.append(-offset * normal, phi)))
