@@ -12,6 +12,13 @@ from scipy.constants import g
 
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.actuators.density_piece import DensityPiece, finite
+from limitsurf.actuators.density_traits import (
+    centers_of,
+    flat_directions,
+    known_convex,
+    turning_bound,
+)
+from limitsurf.actuators.potential_field import ConvexField, FieldSum
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.density import JACOBIAN, POTENTIAL, STATE, Pieces, density_states
@@ -114,6 +121,30 @@ class DensityField:
     def has_potential(self) -> bool:
         """Whether loads are minus the gradient of a potential."""
         return all(piece.level is not None for piece in self._pieces)
+
+    @cached_property
+    def convex(self) -> bool:
+        """Whether the potential is known to be convex in the position of any part."""
+        return self.has_potential and known_convex(self._pieces)
+
+    @property
+    def flat(self) -> Array:
+        """Orthonormal directions (d, 2) in which the density does not change."""
+        return flat_directions(self._pieces)
+
+    @property
+    def centers(self) -> Array:
+        """Anchors (c, 2) of the pieces that change from place to place [m]."""
+        return centers_of(self._pieces)
+
+    def turning_bound(self, part: Part, center: ArrayLike | None, reach: float) -> float:
+        """Return a bound on the second derivative of the potential; see `ConvexField`."""
+        about = None if center is None else as_array("center", center, 2)
+        return turning_bound(self._pieces, part, about, reach)
+
+    def __add__(self, other: ConvexField) -> FieldSum:
+        """Return the sum with another field."""
+        return FieldSum(self, other)
 
     def scaled(self, factor: float) -> DensityField:
         """Return the field times a number.
