@@ -109,6 +109,8 @@ class DensityField:
         scalar = np.ndim(stiffness) == 0
         K = as_number("stiffness", stiffness) * np.eye(2) if scalar else stiffness
         K = as_array("stiffness", K, 2, 2)
+        if np.ptp([K[0, 1], K[1, 0]]) <= 1e-14 * np.abs(K).max():  # rounding apart
+            K = 0.5 * (K + K.T)
         level = 0.0 if K[0, 1] == K[1, 0] else None
         return cls([DensityPiece((0.0, 0.0), slope=-K, anchor=center, level=level)])
 
@@ -176,7 +178,7 @@ class DensityField:
 
     def load(self, part: Part, pose: ArrayLike) -> Array:
         """Return loads (..., 3) on a part at poses (..., 3), about its centre of mass [N, N m]."""
-        return self._states(part, pose)[..., :POTENTIAL]
+        return self.states(part, pose)[..., :POTENTIAL]
 
     def jacobian(self, part: Part, pose: ArrayLike) -> Array:
         """Return the derivatives (..., 3, 3) of `load` with respect to the poses.
@@ -184,7 +186,7 @@ class DensityField:
         Row by row those of force and moment, columns for x, y and theta. Of one side where an edge
         of the part lies along a border.
         """
-        states = self._states(part, pose)
+        states = self.states(part, pose)
         return states[..., JACOBIAN:].reshape(*states.shape[:-1], 3, 3)
 
     def potential(self, part: Part, pose: ArrayLike) -> Array:
@@ -201,7 +203,7 @@ class DensityField:
             raise InputError(
                 "field", "has no potential", remedy="skews have none; give pieces a level"
             )
-        return self._states(part, pose)[..., POTENTIAL]
+        return self.states(part, pose)[..., POTENTIAL]
 
     @cached_property
     def kernel_data(self) -> Pieces:
@@ -217,7 +219,8 @@ class DensityField:
             np.array([piece.level or 0.0 for piece in self._pieces]),
         )
 
-    def _states(self, part: Part, pose: ArrayLike) -> Array:
+    def states(self, part: Part, pose: ArrayLike) -> Array:
+        """Return load, potential and Jacobian by rows, (..., 13), in one go."""
         poses, shape = as_points("pose", pose, 3)
         states = np.empty((len(poses), STATE))
         density_states(part.edges, poses, self.kernel_data, states)

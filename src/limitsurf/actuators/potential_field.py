@@ -55,6 +55,10 @@ class ConvexField(LoadField, Protocol):
         """Points (c, 2) about which the field is built [m]; none if it is the same everywhere."""
         ...
 
+    def states(self, part: Part, pose: ArrayLike) -> Array:
+        """Return load, potential and Jacobian by rows, (..., 13), in one go."""
+        ...
+
     def turning_bound(self, part: Part, center: ArrayLike | None, reach: float) -> float:
         """Return a bound on the second derivative of the potential under turns about a point [J].
 
@@ -124,6 +128,10 @@ class FieldSum:
     def turning_bound(self, part: Part, center: ArrayLike | None, reach: float) -> float:
         """Return the sum of the bounds of the terms; see `ConvexField`."""
         return float(sum(field.turning_bound(part, center, reach) for field in self._fields))
+
+    def states(self, part: Part, pose: ArrayLike) -> Array:
+        """Return load, potential and Jacobian by rows, (..., 13), in one go."""
+        return np.asarray(sum(field.states(part, pose) for field in self._fields))
 
     def load(self, part: Part, pose: ArrayLike) -> Array:
         """Return loads (..., 3) on a part at poses (..., 3), about its centre of mass [N, N m]."""

@@ -108,18 +108,19 @@ class RadialField:
 
     def load(self, part: Part, pose: ArrayLike) -> Array:
         """Return loads (..., 3) on a part at poses (..., 3), about its centre of mass [N, N m]."""
-        return self._states(part, pose)[..., :POTENTIAL]
+        return self.states(part, pose)[..., :POTENTIAL]
 
     def jacobian(self, part: Part, pose: ArrayLike) -> Array:
         """Return the derivatives (..., 3, 3) of `load` with respect to the poses."""
-        states = self._states(part, pose)
+        states = self.states(part, pose)
         return states[..., JACOBIAN:].reshape(*states.shape[:-1], 3, 3)
 
     def potential(self, part: Part, pose: ArrayLike) -> Array:
         """Return ``density * integral |x - center| dA`` (...) of a part at poses (..., 3) [J]."""
-        return self._states(part, pose)[..., POTENTIAL]
+        return self.states(part, pose)[..., POTENTIAL]
 
-    def _states(self, part: Part, pose: ArrayLike) -> Array:
+    def states(self, part: Part, pose: ArrayLike) -> Array:
+        """Return load, potential and Jacobian by rows, (..., 13), in one go."""
         poses, shape = as_points("pose", pose, 3)
         states = np.empty((len(poses), STATE))
         center = (float(self._center[0]), float(self._center[1]))

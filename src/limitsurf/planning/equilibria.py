@@ -25,6 +25,7 @@ __all__ = ["Equilibria", "equilibria"]
 Array = NDArray[np.float64]
 
 _TURN = 2 * np.pi
+_EFFORT = 12_000_000  # edges looked at, some seconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +136,12 @@ def equilibria(part: Part, field: LoadField) -> Equilibria:
 
 
 def _from_reduced(part: Part, field: ConvexField) -> Equilibria:
-    origin = np.vstack([field.centers, np.zeros((1, 2))])[0]
-    reduced = ReducedPotential.of(part, field, origin)
+    reduced = ReducedPotential.of(part, field)
     if reduced is None:
-        return _none(field, "the field pushes the part away: no position is at rest")
+        return _none(field, "pushed away: no position within ten thousand circumradii is at rest")
     rise = reduced.rise
-    changes = sign_changes(reduced.slope, _TURN, rise, noise=reduced.noise)
+    budget = min(200_000, _EFFORT // len(part.edges))
+    changes = sign_changes(reduced.slope, _TURN, rise, noise=reduced.noise, budget=budget)
     if changes.zero:
         theta, index = np.zeros(1), np.zeros(1, dtype=np.int64)
         complete, note = rise == 0.0, "at rest in every orientation" + ", to rounding" * (rise > 0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,9 +14,11 @@ from limitsurf.geometry.part import Part
 __all__ = ["stationary_poses"]
 
 Array = NDArray[np.float64]
+Function = Callable[[Array], Array]
 
 _STARTS = 400
-_STEPS = 200
+_STEPS = 100
+_GATHERING, _FIRST_STEP, _SHRINK = 40, 0.7, 0.88
 _SEED = 7
 _AT_REST = 1e-10  # of the loads that the starts feel
 _SAME = 1e-6  # circumradii and radians
@@ -25,9 +29,10 @@ def stationary_poses(
 ) -> tuple[Array, NDArray[np.int64]]:
     """Return distinct poses without load (k, 3), by orientation, and their indices (k,).
 
-    The Levenberg-Marquardt method on the load from random poses within three circumradii of the
-    hull of the centres, in axes that leave out flat directions. Degenerate families of
-    equilibria come as many poses.
+    The Levenberg-Marquardt method on the load from random poses near the hull of the centres, two
+    thirds of which first go with or against the force in position, since loads often do not
+    change where a part lies beside the borders of a field. Flat directions are left out.
+    Degenerate families of equilibria come as many poses.
     """
     R = part.circumradius
     unit, across = np.array([R, R, 1.0]), np.eye(2) - flat.T @ flat
@@ -44,6 +49,7 @@ def stationary_poses(
     scale = float(np.abs(loads(starts)).max())
     if not scale > 0.0:
         raise InputError("field", "does not push the part", remedy="give a density")
+    starts = _gathered(loads, starts, R)
     q = _levenberg_marquardt(lambda q: loads(q) / scale, lambda q: slopes(q) / scale, starts, unit)
     rest = np.abs(field.load(part, q) * unit).max(axis=1) <= _AT_REST * scale
     found = _distinct(q[rest], unit, across)
@@ -59,7 +65,18 @@ def _starts(R: float, centers: Array) -> Array:
     return np.column_stack([share @ hub + around, rng.uniform(0.0, 2 * np.pi, _STARTS)])
 
 
-def _levenberg_marquardt(loads, slopes, q: Array, unit: Array) -> Array:  # type: ignore[no-untyped-def]
+def _gathered(loads: Function, q: Array, R: float) -> Array:
+    """Return poses after ever shorter steps with the force, against it, or none."""
+    q, sense = q.copy(), np.resize([1.0, -1.0, 0.0], len(q))
+    for k in range(_GATHERING):
+        F = loads(q)[:, :2]
+        size = np.linalg.norm(F, axis=1, keepdims=True)
+        way = np.divide(F, size, out=np.zeros_like(F), where=size > 0.0)
+        q[:, :2] += (_FIRST_STEP * R * _SHRINK**k * sense)[:, None] * way
+    return q
+
+
+def _levenberg_marquardt(loads: Function, slopes: Function, q: Array, unit: Array) -> Array:
     q, damping = q.copy(), np.full(len(q), 1e-2)
     L = loads(q)
     for _ in range(_STEPS):

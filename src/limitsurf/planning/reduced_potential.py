@@ -11,12 +11,16 @@ how fast w' may climb.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from limitsurf.actuators.potential_field import ConvexField
+from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
+from limitsurf.kernels.density import JACOBIAN, POTENTIAL
 
 __all__ = ["ReducedPotential", "force_scale"]
 
@@ -24,8 +28,8 @@ Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(np.float64).eps)
 _STEPS = 80
-_LOST = 1e6  # circumradii: a part that gets that far has no position of rest
-_GRID = 64
+_LOST = 1e4  # circumradii: a part that gets that far from the centres has no position of rest
+_COARSE, _FINE = 64, 512
 
 
 def force_scale(part: Part, field: ConvexField, origin: Array) -> float:
@@ -46,43 +50,56 @@ class ReducedPotential:
     ----------
     part, field : Part, ConvexField
         What rests where.
-    origin : (2,) float
-        Where to look first [m]; along flat directions the part stays there.
     across : (d, 2) float
         Directions in which the field changes.
     force : float
         Scale of forces [N].
-    grid, places : (k,) and (k, 2) float
-        Orientations over a turn, and positions at rest there [m].
+    places : (k, 2) float
+        Positions at rest at k orientations, evenly over a turn [m].
     """
 
     part: Part
     field: ConvexField
-    origin: Array
     across: Array
     force: float
-    grid: Array
     places: Array
 
     @classmethod
-    def of(cls, part: Part, field: ConvexField, origin: Array) -> ReducedPotential | None:
-        """Return it, or None where the field has no position of rest for some orientation."""
+    def of(cls, part: Part, field: ConvexField) -> ReducedPotential | None:
+        """Return it, or None where no position near the centres is at rest.
+
+        Nearer than ten thousand circumradii and twice their spread.
+
+        Raises
+        ------
+        InputError
+            The field does not push.
+        SolveFailed
+            The positions did not settle.
+        """
+        origin = np.vstack([field.centers, np.zeros((1, 2))])[0]
         flat = field.flat
         across = np.linalg.svd(np.eye(2) - flat.T @ flat)[2][: 2 - len(flat)]
-        grid = np.linspace(0.0, 2 * np.pi, _GRID + 1)
-        start = np.broadcast_to(origin, (len(grid), 2))
         scale = force_scale(part, field, origin)
-        reduced = cls(part, field, origin, across, scale, grid, np.array(start))
-        places, rests = reduced._descend(grid, reduced.places)
-        if not rests.all():
-            return None
-        return cls(part, field, origin, across, scale, grid, places)
+        if not scale > 0.0:
+            raise InputError("field", "does not push the part", remedy="give a density")
+        places = np.tile(origin, (_COARSE, 1))
+        for count in (_COARSE, _FINE):
+            rough = cls(part, field, across, scale, places)
+            theta = 2 * np.pi * np.arange(count) / count
+            poses, states = rough._descend(np.column_stack([rough._start(theta), theta]))
+            drift = np.abs(states[:, :2] @ flat.T).max(initial=0.0) > 1e4 * rough._quiet
+            if drift or not (rough._distance(poses, origin) < rough._lost).all():
+                return None
+            if not (np.hypot(*states[:, :2].T) <= 1e4 * rough._quiet).all():
+                raise SolveFailed("equilibria: positions of rest were not found", rough)
+            places = poses[:, :2]
+        return cls(part, field, across, scale, places)
 
     @property
     def noise(self) -> float:
         """Bound on the rounding errors of moments, as far as poses have digits [N m]."""
-        far = float(np.abs(self.places).max())
-        return 16.0 * _EPS * self.force * (self.part.circumradius + far)
+        return 4.0 * self._quiet * self.part.circumradius
 
     @property
     def rise(self) -> float:
@@ -91,63 +108,82 @@ class ReducedPotential:
         For positions at most twice as far from a centre as any on the grid.
         """
         bounds = [self.field.turning_bound(self.part, None, 0.0)]
-        for center in [self.origin, *self.field.centers]:
+        for center in self.field.centers:
             reach = 2.0 * float(np.hypot(*(self.places - center).T).max())
             bounds.append(self.field.turning_bound(self.part, center, reach))
         return min(bounds)
 
     def position(self, theta: Array) -> Array:
         """Return positions of rest (k, 2) at orientations (k,) [m]."""
-        return self._descend(theta, self._start(theta))[0]
+        return self._descend(np.column_stack([self._start(theta), theta]))[0][:, :2]
 
     def slope(self, theta: Array) -> Array:
         """Return w' (k,) at orientations (k,) [J]; corrected for what the position lacks."""
-        poses = np.column_stack([self.position(theta), theta])
-        load, J = self.field.load(self.part, poses), self.field.jacobian(self.part, poses)
-        step = self._newton(load, J, np.full(len(theta), np.inf))
-        return np.asarray(-load[:, 2] - np.einsum("kd,kd->k", J[:, 2, :2] @ self.across.T, step))
+        _, states = self._descend(np.column_stack([self._start(theta), theta]))
+        step = self._newton(states, np.full(len(theta), np.inf))
+        correction = np.einsum("kd,kd->k", states[:, -3:-1] @ self.across.T, step)
+        return np.asarray(-states[:, 2] - correction)
+
+    @cached_property
+    def _curve(self) -> CubicSpline:
+        closed = np.vstack([self.places, self.places[:1]])
+        return CubicSpline(np.linspace(0.0, 2 * np.pi, len(closed)), closed, bc_type="periodic")
 
     def _start(self, theta: Array) -> Array:
         """Return positions between those of the grid."""
-        turn = np.mod(theta, 2 * np.pi)
-        return np.column_stack([np.interp(turn, self.grid, x) for x in self.places.T])
+        return np.asarray(self._curve(np.mod(theta, 2 * np.pi)))
 
-    def _newton(self, load: Array, J: Array, cap: Array) -> Array:
+    @property
+    def _quiet(self) -> float:
+        """Rounding of forces, as far as poses have digits [N]."""
+        far = float(np.abs(self.places).max()) / self.part.circumradius
+        return 4.0 * _EPS * self.force * (1.0 + far)
+
+    @cached_property
+    def _lost(self) -> float:
+        """How far a part may go from a centre, in circumradii."""
+        spread = np.ptp(self.field.centers, axis=0) if len(self.field.centers) else np.zeros(2)
+        return _LOST + 2.0 * float(np.hypot(*spread)) / self.part.circumradius
+
+    def _distance(self, poses: Array, place: Array) -> Array:
+        """Return distances from a place in circumradii."""
+        return np.asarray(np.hypot(*(poses[:, :2] - place).T) / self.part.circumradius)
+
+    def _pull(self, states: Array) -> Array:
+        """Return the size of the forces across."""
+        return np.asarray(np.linalg.norm(states[:, :2] @ self.across.T, axis=1))
+
+    def _newton(self, states: Array, cap: Array) -> Array:
         """Return regularised Newton steps (k, d) across, no longer than the cap (k,) [m]."""
-        F = load[:, :2] @ self.across.T
+        F, J = states[:, :2] @ self.across.T, states[:, JACOBIAN:].reshape(-1, 3, 3)
         H = -self.across @ J[:, :2, :2] @ self.across.T
-        size = np.linalg.norm(F, axis=1)
-        damping = size / cap + 1e-15 * self.force / self.part.circumradius
-        d = len(self.across)
-        step = np.linalg.solve(H + damping[:, None, None] * np.eye(d), F[:, :, None])[:, :, 0]
-        return np.asarray(step)
+        damping = np.linalg.norm(F, axis=1) / cap + 1e-15 * self.force / self.part.circumradius
+        step = np.linalg.solve(H + damping[:, None, None] * np.eye(len(self.across)), F[:, :, None])
+        return np.asarray(step[:, :, 0])
 
-    def _descend(self, theta: Array, start: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Return positions of least potential (k, 2), and which are at rest.
+    def _descend(self, poses: Array) -> tuple[Array, Array]:
+        """Return poses (k, 3) of least potential over the positions, and their states (k, 13).
 
         Newton's method on a convex function, regularised by the force over a radius of trust.
         """
-        R, poses = self.part.circumradius, np.column_stack([start, theta])
-        cap, live = np.full(len(theta), R), np.arange(len(theta))
-        load, W = self.field.load(self.part, poses), self.field.potential(self.part, poses)
-        quiet = 4.0 * _EPS * self.force * (1.0 + np.abs(start).max() / R)
+        R, origin, states = self.part.circumradius, poses[:, :2].copy(), self._states(poses)
+        cap, live = np.full(len(poses), R), np.arange(len(poses))
         for _ in range(_STEPS):
-            live = live[self._pull(load[live]) > quiet]
-            live = live[np.hypot(*(poses[live, :2] - start[live]).T) < _LOST * R]
+            live = live[self._pull(states[live]) > self._quiet]
+            live = live[self._distance(poses[live], origin[live]) < self._lost]
             if len(live) == 0:
                 break
-            J, trial = self.field.jacobian(self.part, poses[live]), poses[live]
-            trial[:, :2] += self._newton(load[live], J, cap[live]) @ self.across
-            there, level = self.field.load(self.part, trial), self.field.potential(self.part, trial)
-            better = (level < W[live]) | (self._pull(there) < self._pull(load[live]))
+            trial = poses[live]
+            trial[:, :2] += self._newton(states[live], cap[live]) @ self.across
+            there = self._states(trial)
+            better = there[:, POTENTIAL] < states[live, POTENTIAL]
+            better |= self._pull(there) < self._pull(states[live])
             good, bad = live[better], live[~better]
-            poses[good], load[good], W[good] = trial[better], there[better], level[better]
+            poses[good], states[good] = trial[better], there[better]
             cap[good] *= 2.0
             cap[bad] *= 0.125
             live = live[better | (cap[live] > 1e-3 * _EPS * R)]
-        near = np.hypot(*(poses[:, :2] - start).T) < _LOST * R
-        return poses[:, :2], near & (np.hypot(*load[:, :2].T) <= 1e4 * quiet)
+        return poses, states
 
-    def _pull(self, load: Array) -> Array:
-        """Return the size of the forces across."""
-        return np.asarray(np.linalg.norm(load[:, :2] @ self.across.T, axis=1))
+    def _states(self, poses: Array) -> Array:
+        return np.asarray(self.field.states(self.part, poses))
