@@ -67,6 +67,51 @@ def test_many_starts_find_the_same_poses(name):
             assert found.index[match] == descends
 
 
+def random_field(rng):
+    """Return one term to three, of any kind, all convex."""
+
+    def term():
+        kind = rng.integers(4)
+        if kind == 0:
+            return RadialField(rng.uniform(0.2, 2.0), rng.normal(size=2))
+        if kind == 1:
+            return DensityField.squeeze(rng.uniform(0, 3), rng.uniform(0.2, 2.0), rng.normal())
+        if kind == 2:
+            B = rng.normal(size=(2, 2))
+            return DensityField.linear(B @ B.T, rng.normal(size=2))
+        return DensityField.uniform(rng.uniform(0, 6), rng.uniform(0, 0.5))
+
+    field = term()
+    for _ in range(rng.integers(0, 3)):
+        field = field + term()
+    return field
+
+
+@pytest.mark.slow
+def test_nothing_is_missed_in_random_fields(rng):
+    """Whatever many starts find is there, with its index, and so is nothing else."""
+    hits = total = 0
+    for _ in range(80):
+        angle = 2 * np.pi / 9 * (np.arange(9) + rng.uniform(0.0, 0.8, 9))
+        radius = rng.uniform(0.3, 2.0, 9)
+        part = Part(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+        field = random_field(rng)
+        found = equilibria(part, field)
+        assert found.complete
+        if found.neutral:
+            continue
+        total += len(found.poses)
+        across = np.eye(2) - found.flat.T @ found.flat
+        poses, index = stationary_poses(part, field, field.centers, field.flat)
+        for pose, descends in zip(poses, index, strict=True):
+            away = np.abs((found.poses - pose)[:, :2] @ across).sum(axis=1)
+            away += turned(found.poses[:, 2], pose[2])
+            assert away.min() < 1e-5
+            assert found.index[np.argmin(away)] == descends
+        hits += len(poses)
+    assert 150 < hits <= total
+
+
 def test_minimisation_ends_in_stable_poses(rng):
     part, field = PARTS["bracket"], FIELDS["radial and squeeze"]
     stable, reached = equilibria(part, field).stable, set()
@@ -99,6 +144,16 @@ def test_the_reduced_slope_is_a_derivative_and_climbs_no_faster_than_its_bound(n
         assert reduced.slope(theta) == pytest.approx(difference, abs=1e-6 * reduced.rise)
         rise = (reduced.slope(theta + h) - reduced.slope(theta - h)) / (2.0 * h)
         assert 0.02 * reduced.rise < rise.max() <= reduced.rise
+
+
+@pytest.mark.parametrize("ratio", [1.01, 1.1, 1.2])
+def test_rectangles_have_twelve_digits(ratio):
+    """Stable at tan(theta) = +-sqrt(3 b^2/a^2 - 2) in a squeeze (docs/planning.md)."""
+    part = Part([(0, 0), (ratio, 0), (ratio, 1), (0, 1)])
+    theta = np.arctan(np.sqrt(3 / ratio**2 - 2))
+    expected = np.array([theta, np.pi - theta, np.pi + theta, 2 * np.pi - theta])
+    found = equilibria(part, DensityField.squeeze(0.0, 1.0))
+    assert np.sort(found.stable[:, 2]) == pytest.approx(np.sort(expected), abs=1e-12)
 
 
 def test_elliptic_fields_turn_parts_to_their_principal_axes():
