@@ -27,7 +27,8 @@ __all__ = ["ReducedPotential", "force_scale"]
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(np.float64).eps)
-_STEPS = 80
+_STEPS = 200
+_ARMIJO = 1e-4
 _LOST = 1e4  # circumradii: a part that gets that far from the centres has no position of rest
 _COARSE, _FINE = 64, 512
 
@@ -173,17 +174,26 @@ class ReducedPotential:
             live = live[self._distance(poses[live], origin[live]) < self._lost]
             if len(live) == 0:
                 break
-            trial = poses[live]
-            trial[:, :2] += self._newton(states[live], cap[live]) @ self.across
+            trial, here = poses[live], states[live]
+            step = self._newton(here, cap[live]) @ self.across
+            trial[:, :2] += step
             there = self._states(trial)
-            better = there[:, POTENTIAL] < states[live, POTENTIAL]
-            better |= self._pull(there) < self._pull(states[live])
+            better = self._improves(here, there, np.einsum("kd,kd->k", here[:, :2], step))
             good, bad = live[better], live[~better]
             poses[good], states[good] = trial[better], there[better]
             cap[good] *= 2.0
             cap[bad] *= 0.125
             live = live[better | (cap[live] > 1e-3 * _EPS * R)]
         return poses, states
+
+    def _improves(self, here: Array, there: Array, gain: Array) -> NDArray[np.bool_]:
+        """Return where a step lowers the potential as it should; where that is rounding, the force.
+
+        `gain` is what the step would gain if the force stayed as it is.
+        """
+        rounding = 1e3 * _EPS * (np.abs(here[:, POTENTIAL]) + np.abs(there[:, POTENTIAL]))
+        lower = there[:, POTENTIAL] <= here[:, POTENTIAL] - _ARMIJO * gain
+        return np.where(gain > rounding, lower, self._pull(there) < self._pull(here))
 
     def _states(self, poses: Array) -> Array:
         return np.asarray(self.field.states(self.part, poses))
