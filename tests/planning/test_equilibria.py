@@ -112,6 +112,27 @@ def test_nothing_is_missed_in_random_fields(rng):
     assert 150 < hits <= total
 
 
+def test_extreme_strengths_and_distances_settle(rng):
+    """Strengths over six decades, lines and centres up to a thousand circumradii away."""
+    for _ in range(20):
+        size = 10.0 ** rng.uniform(-6, 5)
+        angle = 2 * np.pi / 7 * (np.arange(7) + rng.uniform(0.0, 0.8, 7))
+        radius = size * rng.uniform(0.3, 2.0, 7)
+        part = Part(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+        R = part.circumradius
+        strength = 10.0 ** rng.uniform(-3, 3, 3)
+        place = R * 10.0 ** rng.uniform(-1, 3, 3)[:, None] * rng.normal(size=(3, 2))
+        field = (
+            RadialField(strength[0], place[0])
+            + DensityField.squeeze(rng.uniform(0, 3), strength[1], place[1, 0])
+            + DensityField.squeeze(rng.uniform(0, 3), strength[2], place[2, 0])
+        )
+        found = equilibria(part, field)
+        assert len(found.stable) >= 1
+        far = 1.0 + np.abs(found.poses[:, :2]).max() / R
+        assert np.abs(sizes(part, field, found.poses)).max() < 1e-12 * far
+
+
 def test_minimisation_ends_in_stable_poses(rng):
     part, field = PARTS["bracket"], FIELDS["radial and squeeze"]
     stable, reached = equilibria(part, field).stable, set()
