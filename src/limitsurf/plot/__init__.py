@@ -7,6 +7,7 @@ Every function returns a plotly figure, with units on its axes: ``draw_part(part
 from limitsurf.plot.alignment import draw_alignment
 from limitsurf.plot.animation import animate
 from limitsurf.plot.diameter import draw_diameter_function
+from limitsurf.plot.equilibria import draw_equilibria
 from limitsurf.plot.errors import draw_errors
 from limitsurf.plot.limit_curve import draw_limit_curve
 from limitsurf.plot.limit_surface import draw_limit_surface
@@ -20,6 +21,7 @@ __all__ = [
     "animate_runs",
     "draw_alignment",
     "draw_diameter_function",
+    "draw_equilibria",
     "draw_errors",
     "draw_limit_curve",
     "draw_limit_surface",
