@@ -22,6 +22,7 @@ def settled(trajectory, tolerance):
     return trajectory.times[np.flatnonzero(off)[-1]] if off.any() else 0.0
 
 
+@pytest.mark.slow
 def test_an_array_takes_as_long(plan, paper_t, array64):
     """Settling times of runs on the array, contact by contact."""
     verified = verify_alignment(plan, paper_t, array64, samples=30, seed=4)

@@ -91,7 +91,7 @@ def line_durations(
     >>> from limitsurf.planning.alignment import plan_alignment
     >>> plan = plan_alignment(Part.from_file("paper_t"))
     >>> line_durations(plan, load_array("resonator64")).round(1)
-    array([2.2, 3.5])
+    array([2.4, 3.4])
     """
     if not isinstance(drive, ActuatorArray):
         raise InputError("drive", "is no ActuatorArray", value=drive, remedy="give its array")

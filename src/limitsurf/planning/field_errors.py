@@ -6,21 +6,18 @@ direction that would do the same, so that they add up and compare; see `moment_r
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
-from limitsurf.actuators.activation import Activation, Method, squeeze_activation
+from limitsurf.actuators.activation import Method, squeeze_activation
 from limitsurf.actuators.actuator_array import ActuatorArray
-from limitsurf.contacts.lattice_contacts import LatticeContacts
-from limitsurf.contacts.uniform_friction import UniformFriction
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.starts import check_room
 from limitsurf.planning.moment_ratio import MomentRatio
+from limitsurf.planning.tip_sums import held_moment, poses_near_rest, tip_sums
 from limitsurf.planning.turn_function import TurnFunction, turn_function
 from limitsurf.sets.arguments import as_count, as_number
 
@@ -29,7 +26,6 @@ __all__ = ["FieldErrors"]
 Array = NDArray[np.float64]
 
 _UNLUCKY = 4.0  # standard deviations that count as the worst of unknown dead actuators
-_ANGLES = 45  # orientations at which the deadband is looked at
 
 
 @dataclass(frozen=True)
@@ -160,14 +156,14 @@ class FieldErrors:
         reach = 0.5 * part.circumradius if start_offset is None else start_offset
         check_room(part, array, reach)
         same = replace(array, spread=None)
-        poses = _poses(turn, line, array.pixel.pitch, reach, as_count("samples", samples))
-        sums = _sums(squeeze_activation(same, line, method=method), part, poses)
+        poses = poses_near_rest(turn, line, array.pixel.pitch, reach, as_count("samples", samples))
+        sums = tip_sums(squeeze_activation(same, line, method=method), part, poses)
         ratio, tangent = sums[:, 0] / sums[:, 1], sums[:, 2].sum() / sums[:, 1].sum()
         off = MomentRatio(turn)(poses[:, 0]) - tangent - ratio
         share = np.mean(sums[:, 1] / sums[:, 4] * part.area / turn.potential(poses[:, 0]))
         other = np.zeros(len(poses))
         if array.spread is not None:
-            real = _sums(squeeze_activation(array, line, method=method), part, poses)
+            real = tip_sums(squeeze_activation(array, line, method=method), part, poses)
             other = real[:, 0] / real[:, 1] - ratio
         variance = dead / (1.0 - dead) * sums[:, 3] / sums[:, 1] ** 2
         grip = array.pixel.residual_fraction / array.pixel.offset_fraction
@@ -175,7 +171,7 @@ class FieldErrors:
             direction=float(np.arctan(tangent)),
             pixels=float(np.sqrt(np.mean(off**2))),
             pixels_worst=float(np.abs(off).max()),
-            deadband=float(grip / share * _held(turn)) if grip > 0.0 else 0.0,
+            deadband=float(grip / share * held_moment(turn)) if grip > 0.0 else 0.0,
             spread=float(np.sqrt(np.mean(other**2 + variance))),
             spread_worst=float(np.max(np.abs(other) + _UNLUCKY * np.sqrt(variance))),
         )
@@ -192,70 +188,3 @@ class FieldErrors:
             f"{k} up to {np.degrees(np.arctan(w)):.2f} deg" for k, w in worst.items() if w > 0.0
         ]
         return f"FieldErrors({', '.join(shown)})"
-
-
-def _poses(turn: TurnFunction, line: float, pitch: float, reach: float, samples: int) -> Array:
-    """Return rows ``phi, x, y, theta, px, py``: poses, and the middle of the median chord there."""
-    part = turn.part
-    rests = np.concatenate([turn.stable, turn.unstable])
-    unit = 2.0 * qmc.Halton(3, scramble=False).random(samples * len(rests) + 1)[1:] - 1.0
-    phi = np.tile(rests, samples) + pitch / part.circumradius * unit[:, 0]
-    along, normal = np.array([np.cos(line), np.sin(line)]), np.array([-np.sin(line), np.cos(line)])
-    middles = np.array([_chord_middle(turn, angle) for angle in phi])
-    cosine, sine = np.cos(phi + line), np.sin(phi + line)
-    x, y = middles.T
-    arm = np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
-    offset = -(arm @ normal) + 0.5 * pitch * unit[:, 1]
-    place = offset[:, None] * normal + reach * unit[:, 2:] * along
-    return np.asarray(np.column_stack([phi, place, phi + line, arm]), dtype=np.float64)
-
-
-def _chord_middle(turn: TurnFunction, phi: float) -> Array:
-    """Return the middle of the median's chords from the centroid, part frame [m]."""
-    center = turn.median(float(phi))[1].centroid
-    x, y = turn.part.centroid
-    return np.array([center.x - x, center.y - y])
-
-
-def _sums(activation: Activation, part: Part, poses: Array) -> Array:
-    """Return rows of sums over running tips, pushes in units of the nominal one.
-
-    Moment about the chord's middle; work against the line, the U of the array; moment that turned
-    directions take away; variance of the first without its mean, per dead tip; number of tips.
-    """
-    line = activation.line
-    assert line is not None
-    along, normal = np.array([np.cos(line), np.sin(line)]), np.array([-np.sin(line), np.cos(line)])
-    rows = []
-    for (x, y, *_), arm, spots, push in _tips(activation, part, poses):
-        s, n, height = push @ along, push @ normal, (spots - arm) @ normal
-        moment = (spots - arm) @ along * n - height * s
-        work = -(spots + np.array([x, y])) @ normal * n
-        moment_sum, work_sum = moment.sum(), work.sum()
-        off = moment - moment_sum / work_sum * work
-        rows.append([moment_sum, work_sum, (height * s).sum(), (off**2).sum(), len(spots)])
-    return np.array(rows)
-
-
-def _tips(
-    activation: Activation, part: Part, poses: Array
-) -> Iterator[tuple[Array, Array, Array, Array]]:
-    """Yield pose, arm, and positions and pushes of the running tips, for each row of poses."""
-    array, running = activation.array, activation.running
-    sites = LatticeContacts(part, array.site_pitch, array.first_site, running.shape)
-    pushes = array.site_directions
-    for row in poses:
-        sites.move(row[1:4])
-        runs = running[tuple(sites.sites.T)]
-        if not runs.any():
-            raise InputError("array", "leaves no running actuator under the part")
-        yield row[1:4], row[4:6], sites.positions[runs], pushes[tuple(sites.sites[runs].T)]
-
-
-def _held(turn: TurnFunction) -> float:
-    """Return the largest moment of unit friction, turning about the chord's middle, over U."""
-    friction = UniformFriction(turn.part, 1.0)
-    phi = np.concatenate([np.linspace(0.0, np.pi, _ANGLES), turn.stable, turn.unstable])
-    x, y = np.array([_chord_middle(turn, angle) for angle in phi]).T
-    moments = friction.support(np.column_stack([y, -x, np.ones_like(x)]))
-    return float(np.max(moments / turn.potential(phi)))

@@ -27,8 +27,6 @@ __all__ = ["Robustness", "Status", "robustness"]
 Array = NDArray[np.float64]
 Status = Literal["guaranteed", "likely", "lost"]
 
-_ORDER: tuple[Status, ...] = ("guaranteed", "likely", "lost")
-
 
 @dataclass(frozen=True, eq=False)
 class Robustness:
@@ -57,16 +55,17 @@ class Robustness:
 
     @property
     def steps(self) -> tuple[Status, ...]:
-        """Status of each line: whether the rest of the plan can still align what it leaves."""
+        """Status of each line, no better than that of the line before; see `robustness`."""
+        worst, likely = (np.logical_and.accumulate(p.held) for p in (self.worst, self.likely))
         return tuple(
-            "guaranteed" if worst else "likely" if likely else "lost"
-            for worst, likely in zip(self.worst.held, self.likely.held, strict=True)
+            "guaranteed" if sure else "likely" if often else "lost"
+            for sure, often in zip(worst, likely, strict=True)
         )
 
     @property
     def status(self) -> Status:
-        """Status of the plan, that of its worst line."""
-        return max(self.steps, key=_ORDER.index)
+        """Status of the plan, that of its last line."""
+        return self.steps[-1]
 
     @property
     def least_margin(self) -> float:
@@ -133,7 +132,8 @@ def robustness(
     with the direction off by eps and the moment by w U, a part may rest in the cells of
     :math:`\{|U'/U - \tan\epsilon| \le w\}`. Intervals of orientations go through both. A line is
     *guaranteed* if, with all errors at their worst, what it leaves could still be aligned by the
-    rest of the plan without errors; *likely* if so with `sigmas` standard deviations; else *lost*.
+    rest of the plan without errors; *likely* if so with `sigmas` standard deviations; else *lost*:
+    not to be relied on, though some starts may succeed.
 
     Parameters
     ----------
