@@ -33,7 +33,8 @@ class Robustness:
     """Outcome of an interval propagation through a plan.
 
     The intervals hold orientations in the array's frame after each line, of all parts but those
-    that start within the first line's unstable bands; what becomes of these is in `at_risk`.
+    that start within the first line's unstable bands; `at_risk` is the share of those that the rest
+    of the plan may not align.
 
     Attributes
     ----------
@@ -95,14 +96,15 @@ class Robustness:
         return rows
 
     def __repr__(self) -> str:
-        """Return the status of every line, margin and width."""
+        """Return the status of every line; width, margin and risk are with errors at worst."""
         lines = ", ".join(
             f"{angle:.2f} {step}"
             for angle, step in zip(np.degrees(self.plan.lines), self.steps, strict=True)
         )
         width, margin = np.degrees(self.final_width), np.degrees(self.least_margin)
         left = f"margin {margin:.2f} deg" if np.isfinite(margin) else "any margin"
-        return f"Robustness({self.status}: {lines}; final width {width:.2f} deg, {left})"
+        risk = f"{100 * self.worst.at_risk:.2g} % of starts at risk"
+        return f"Robustness({self.status}: {lines}; final width {width:.2f} deg, {left}, {risk})"
 
 
 def _shifts(plan: AlignmentPlan, bounds: StepBounds) -> tuple[float, float]:
