@@ -10,7 +10,6 @@ from limitsurf.motion.simulate_many import simulate_many
 from limitsurf.motion.starts import random_starts
 from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.field_errors import FieldErrors
-from limitsurf.planning.propagation import joined
 from limitsurf.planning.robustness import robustness
 from limitsurf.planning.turn_function import turn_function
 from tests.planning.test_field_errors import with_pitch
@@ -187,22 +186,6 @@ def test_a_small_skew_shifts_rests_by_its_tangent(plan):
     turn = turn_function(plan.part)
     shift = eps * turn.potential(turn.stable) / turn.curvature(turn.stable)
     assert np.radians(row["rest_deg"]) == pytest.approx(shift.max(), rel=0.02)
-
-
-def test_joined_intervals_cover_the_same(rng):
-    for _ in range(50):
-        low = rng.uniform(-9, 9, 5)
-        intervals = np.column_stack([low, low + rng.exponential(0.4, 5)])
-        found = joined(intervals, np.pi)
-        phi = rng.uniform(0, np.pi, 400)
-        lifted = phi[:, None] + np.pi * np.arange(-5, 6)
-        before, after = (
-            ((lifted[..., None] >= s[:, 0]) & (lifted[..., None] <= s[:, 1])).any(axis=(1, 2))
-            for s in (intervals, found)
-        )
-        assert np.array_equal(before, after)
-        assert (np.diff(found.ravel()) >= 0.0).all()
-        assert ((found[:, 0] >= 0) & (found[:, 0] < np.pi)).all()
 
 
 def test_one_errors_for_each_line(plan):
