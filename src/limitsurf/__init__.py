@@ -75,10 +75,15 @@ if TYPE_CHECKING:
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
     from limitsurf.planning.diameter_function import DiameterFunction as DiameterFunction
     from limitsurf.planning.diameter_function import diameter_function as diameter_function
+    from limitsurf.planning.duration import expected_duration as expected_duration
+    from limitsurf.planning.duration import line_durations as line_durations
     from limitsurf.planning.equilibria import Equilibria as Equilibria
     from limitsurf.planning.equilibria import equilibria as equilibria
+    from limitsurf.planning.field_errors import FieldErrors as FieldErrors
     from limitsurf.planning.line_plan import LinePlan as LinePlan
     from limitsurf.planning.plan_lines import plan_lines as plan_lines
+    from limitsurf.planning.robustness import Robustness as Robustness
+    from limitsurf.planning.robustness import robustness as robustness
     from limitsurf.planning.skewed_equilibria import skewed_equilibria as skewed_equilibria
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
     from limitsurf.planning.squeeze_function import squeeze_function as squeeze_function
@@ -120,6 +125,7 @@ _HOME = {
     "DiameterFunction": "planning.diameter_function",
     "Ellipsoid": "sets.ellipsoid",
     "Equilibria": "planning.equilibria",
+    "FieldErrors": "planning.field_errors",
     "FieldSum": "actuators.potential_field",
     "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
@@ -140,6 +146,7 @@ _HOME = {
     "RadialField": "actuators.radial_density",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
+    "Robustness": "planning.robustness",
     "Runs": "motion.simulate_many",
     "Schedule": "motion.schedule",
     "Section": "sets.sections",
@@ -165,6 +172,7 @@ _HOME = {
     "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
     "equilibria": "planning.equilibria",
+    "expected_duration": "planning.duration",
     "feeder_field": "planning.universal_feeder",
     "feeder_range": "planning.universal_feeder",
     "feet_motion": "motion.feet",
@@ -173,6 +181,7 @@ _HOME = {
     "friction_load": "contacts.friction_load",
     "headings": "actuators.pixel_lattice",
     "limit_curve": "sets.sections",
+    "line_durations": "planning.duration",
     "load_array": "actuators.actuator_array",
     "load_error": "actuators.field_error",
     "pivot_point": "planning.universal_feeder",
@@ -185,6 +194,7 @@ _HOME = {
     "push_density": "actuators.density_field",
     "radial_field": "actuators.force_fields",
     "realise": "actuators.realised_field",
+    "robustness": "planning.robustness",
     "section": "sets.sections",
     "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",

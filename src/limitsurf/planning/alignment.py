@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +20,7 @@ from limitsurf.planning.turn_function import turn_function
 
 if TYPE_CHECKING:
     from limitsurf.actuators.actuator_array import ActuatorArray
+    from limitsurf.planning.field_errors import FieldErrors
     from limitsurf.planning.robustness import Robustness
 
 __all__ = ["AlignmentPlan", "plan_alignment"]
@@ -54,17 +56,19 @@ class AlignmentPlan(LinePlan):
     model: Model = "squeeze"
     mobility_ratio: float = 1.0
 
-    def robustness(self, array: ActuatorArray) -> Robustness:
+    def robustness(
+        self, array: ActuatorArray | FieldErrors | Sequence[FieldErrors], **options: Any
+    ) -> Robustness:
         """Return what the errors of a real array leave of the plan; see `Robustness`."""
         from limitsurf.planning.robustness import robustness
 
-        return robustness(self, array)
+        return robustness(self, array, **options)
 
-    def expected_duration(self, drive: ActuatorArray) -> float:
+    def expected_duration(self, drive: ActuatorArray, **options: Any) -> float:
         """Return the expected time of the whole plan on a drive [s]."""
         from limitsurf.planning.duration import expected_duration
 
-        return expected_duration(self, drive)
+        return expected_duration(self, drive, **options)
 
     def to_json(self) -> str:
         """Return the plan as JSON text; angles in radians, the outline in metres."""
