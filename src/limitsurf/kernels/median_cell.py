@@ -1,0 +1,274 @@
+r"""Medians and squeeze energy over an interval of directions: only edges near the line are read.
+
+The line turns about the middle ``s_m`` of its chords (``z' = -s_m``), so that no point of the part
+at distance at most R from the centroid comes nearer to the line, in directions ``theta +- h``, than
+``|n.x - z| - 2 R h``. Edges beyond the strip ``|n.x - z| <= w = 2 R h`` stay on their side: those on
+the left have given area and first moment once and for all, those on the right are forgotten.
+
+With the area 1, the centroid at the origin and M the first moment of the left half,
+
+.. math::
+    U = 2\, n \cdot M, \qquad U' = -2\, u \cdot M, \qquad U'' = 2 J - U
+
+J = min_c of the integral of ``(s - c)^2`` over the chords grows with the set of chords. At
+directions ``theta +- h`` that set differs from the one at theta only where edges pass through the
+strip, which encloses J, and with it U'' (``docs/planning.md``).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from limitsurf.kernels.compile import Floats, Ints, compiled
+
+__all__ = [
+    "LEAST",
+    "START",
+    "Cell",
+    "Known",
+    "View",
+    "halves",
+    "look",
+    "median_at",
+    "median_in",
+    "state_in",
+    "whole_turn",
+]
+
+CELLS = 16  # into which a half turn is cut to begin with
+LEVELS = 60  # of halvings, at most; LEAST ends them before
+LEAST = 2.0**-50  # half width of a cell [rad] that is not cut any more
+START = 0.5772156649015329  # no direction that a symmetric part might single out
+
+
+class Known(NamedTuple):
+    """What a half-plane holds for certain, and which edges need a look: `kept[first:][:number]`."""
+
+    area: float  # sums over the edges that stay on the left
+    mx: float
+    my: float
+    first: int
+    number: int
+
+
+class Cell(NamedTuple):
+    """Directions ``[left, right]``, a guess and bounds of z, and what is known for all of them."""
+
+    left: float
+    right: float
+    z: float
+    low: float
+    high: float
+    known: Known
+
+
+class View(NamedTuple):
+    """The median in the middle of a cell, and what holds in all of it."""
+
+    theta: float
+    half: float
+    z: float
+    energy: float
+    slope: float
+    second: float  # J
+    chord: float
+    middle: float  # s_m
+    strip: float  # w
+    low: float  # U'' lies between low and high
+    high: float
+    drift: float  # s_m, seen along u(theta), moves by at most this
+    known: Known
+
+
+@compiled
+def whole_turn(edges: Floats, radius: float) -> tuple[Ints, list[Cell]]:
+    """Return room for lists of edges, and cells that cover half a turn, the first one last."""
+    n = edges.shape[0]
+    kept = np.empty(LEVELS * n, dtype=np.int32)
+    for i in range(n):
+        kept[i] = i
+    width = np.pi / CELLS
+    everything = Known(0.0, 0.0, 0.0, 0, n)
+    stack = [
+        Cell(START + k * width, START + (k + 1) * width, 0.0, -radius, radius, everything)
+        for k in range(CELLS - 1, -1, -1)
+    ]
+    return kept, stack
+
+
+@compiled
+def _left_area(
+    edges: Floats, kept: Ints, known: Known, theta: float, z: float
+) -> tuple[float, float]:
+    """Return the area left of the line that the kept edges add, and the length of the chords."""
+    cos, sin = np.cos(theta), np.sin(theta)
+    area = 0.0
+    chord = 0.0
+    for k in range(known.first, known.first + known.number):
+        i = kept[k]
+        x0, y0, x1, y1 = edges[i, 0], edges[i, 1], edges[i, 2], edges[i, 3]
+        t0 = cos * y0 - sin * x0
+        t1 = cos * y1 - sin * x1
+        if t0 > z or t1 > z:
+            triangle = 0.5 * (x0 * (y1 - y0) - y0 * (x1 - x0))
+            if t0 > z and t1 > z:
+                area += triangle
+            else:
+                share = (t0 - z) / (t0 - t1)
+                s = cos * x0 + sin * y0 + share * (cos * (x1 - x0) + sin * (y1 - y0))
+                area += triangle * (share if t0 > z else 1.0 - share)
+                chord += s if t1 > z else -s
+    return area - 0.5 * z * chord, chord
+
+
+@compiled
+def median_at(
+    edges: Floats, kept: Ints, known: Known, theta: float, guess: float, low: float, high: float
+) -> float:
+    """Return z of the median in direction theta: Newton steps kept inside a bracket."""
+    z = min(max(guess, low), high)
+    reach = 2e-16 * max(abs(low), abs(high))
+    for _ in range(100):
+        more, chord = _left_area(edges, kept, known, theta, z)
+        excess = known.area + more - 0.5
+        if excess > 0.0:
+            low = z
+        elif excess < 0.0:
+            high = z
+        else:
+            return z
+        step = z + excess / chord if chord > 0.0 else 0.5 * (low + high)
+        if not low < step < high:
+            step = 0.5 * (low + high)
+        if abs(step - z) <= reach or step in (low, high):
+            return step
+        z = step
+    return z
+
+
+@compiled
+def state_in(
+    edges: Floats, kept: Ints, known: Known, theta: float, z: float
+) -> tuple[float, float, float, float, float]:
+    """Return ``(U, U', J, chord length, s_m)`` at the median ``n.x = z``."""
+    cos, sin = np.cos(theta), np.sin(theta)
+    mx, my = known.mx, known.my
+    length = 0.0
+    first = 0.0
+    second = 0.0
+    for k in range(known.first, known.first + known.number):
+        i = kept[k]
+        x0, y0, x1, y1 = edges[i, 0], edges[i, 1], edges[i, 2], edges[i, 3]
+        t0 = cos * y0 - sin * x0
+        t1 = cos * y1 - sin * x1
+        if t0 > z or t1 > z:
+            dx, dy = x1 - x0, y1 - y0
+            sixth = (x0 * dy - y0 * dx) / 6
+            if t0 > z and t1 > z:
+                mx += sixth * (x0 + x1)
+                my += sixth * (y0 + y1)
+            else:
+                share = (t0 - z) / (t0 - t1)
+                x, y = x0 + share * dx, y0 + share * dy
+                s = cos * x + sin * y
+                if t0 > z:
+                    mx += sixth * share * (x0 + x)
+                    my += sixth * share * (y0 + y)
+                    s_signed = -s
+                else:
+                    mx += sixth * (1.0 - share) * (x + x1)
+                    my += sixth * (1.0 - share) * (y + y1)
+                    s_signed = s
+                length += s_signed
+                first += s_signed * s / 2
+                second += s_signed * s * s / 3
+    energy = 2.0 * (cos * my - sin * mx - z * z * length / 3)
+    slope = -2.0 * (cos * mx + sin * my - z * first / 3)
+    middle = first / length if length > 0.0 else 0.0
+    return energy, slope, max(second - first * middle, 0.0), length, middle
+
+
+@compiled
+def median_in(
+    edges: Floats, kept: Ints, view: View, theta: float
+) -> tuple[float, float, float, float, float, float]:
+    """Return ``(z, U, U', J, chord length, s_m)`` in a direction inside a cell looked at."""
+    low, high = view.z - view.strip, view.z + view.strip
+    guess = view.z - view.middle * (theta - view.theta)
+    z = median_at(edges, kept, view.known, theta, guess, low, high)
+    energy, slope, second, chord, middle = state_in(edges, kept, view.known, theta, z)
+    return z, energy, slope, second, chord, middle
+
+
+@compiled
+def _narrow(
+    edges: Floats, kept: Ints, known: Known, theta: float, z: float, middle: float, w: float
+) -> tuple[Known, float, float, float]:
+    """List the edges in the strip behind those known so far.
+
+    Returns what is known then, and what the shadows of the edges in the strip on the line add up
+    to: length, and integrals of ``|s - s_m|`` (a bound) and of its square.
+    """
+    cos, sin = np.cos(theta), np.sin(theta)
+    top = known.first + known.number
+    number = 0
+    area, mx, my = known.area, known.mx, known.my
+    shadow0, shadow1, shadow2 = 0.0, 0.0, 0.0
+    for k in range(known.first, top):
+        i = kept[k]
+        x0, y0, x1, y1 = edges[i, 0], edges[i, 1], edges[i, 2], edges[i, 3]
+        t0 = cos * y0 - sin * x0 - z
+        t1 = cos * y1 - sin * x1 - z
+        if t0 > w and t1 > w:
+            triangle = 0.5 * (x0 * (y1 - y0) - y0 * (x1 - x0))
+            area += triangle
+            mx += triangle * (x0 + x1) / 3
+            my += triangle * (y0 + y1) / 3
+        elif not (t0 < -w and t1 < -w):
+            kept[top + number] = i
+            number += 1
+            s0 = cos * x0 + sin * y0 - middle
+            run = cos * (x1 - x0) + sin * (y1 - y0)
+            from_t, to_t = min(max(t0, -w), w), min(max(t1, -w), w)
+            a = s0 if from_t == t0 else s0 + run * ((from_t - t0) / (t1 - t0))
+            b = s0 + run if to_t == t1 else s0 + run * ((to_t - t0) / (t1 - t0))
+            a, b = min(a, b), max(a, b)
+            shadow0 += b - a
+            shadow1 += (b - a) * max(abs(a), abs(b))
+            shadow2 += (b - a) * (a * a + a * b + b * b) / 3
+    return Known(area, mx, my, top, number), shadow0, shadow1, shadow2
+
+
+@compiled
+def look(edges: Floats, radius: float, kept: Ints, cell: Cell) -> View:
+    """Return the median in the middle of a cell, and bounds of U'' in all of it."""
+    theta = 0.5 * (cell.left + cell.right)
+    half = 0.5 * (cell.right - cell.left)
+    z = median_at(edges, kept, cell.known, theta, cell.z, cell.low, cell.high)
+    energy, slope, second, chord, middle = state_in(edges, kept, cell.known, theta, z)
+    strip = 2.0 * radius * (half * (1 + 1e-9) + 1e-15)
+    known, shadow0, shadow1, shadow2 = _narrow(edges, kept, cell.known, theta, z, middle, strip)
+    least, most = 0.0, (second + shadow2) / np.cos(half) ** 3
+    drift = 2.0 * radius
+    if shadow0 < chord:
+        least = max(second - shadow2 - shadow1 * shadow1 / (chord - shadow0), 0.0)
+        drift = shadow1 / (chord - shadow0)
+    change = half * (abs(slope) + half * max(2.0 * most, radius))  # of U; 0 <= U <= radius
+    low, high = 2.0 * least - energy - change, 2.0 * most - energy + change
+    return View(
+        theta, half, z, energy, slope, second, chord, middle, strip, low, high, drift, known
+    )
+
+
+@compiled
+def halves(view: View) -> tuple[Cell, Cell]:
+    """Return the halves of a cell, the right one first: a stack then gives the left one first."""
+    low, high = view.z - view.strip, view.z + view.strip
+    turn = 0.5 * view.half * view.middle
+    left, right = view.theta - view.half, view.theta + view.half
+    return (
+        Cell(view.theta, right, view.z - turn, low, high, view.known),
+        Cell(left, view.theta, view.z + turn, low, high, view.known),
+    )
