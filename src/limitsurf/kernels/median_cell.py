@@ -2,8 +2,8 @@ r"""Medians and squeeze energy over an interval of directions: only edges near t
 
 The line turns about the middle ``s_m`` of its chords (``z' = -s_m``), so that no point of the part
 at distance at most R from the centroid comes nearer to the line, in directions ``theta +- h``, than
-``|n.x - z| - 2 R h``. Edges beyond the strip ``|n.x - z| <= w = 2 R h`` stay on their side: those on
-the left have given area and first moment once and for all, those on the right are forgotten.
+``|n.x - z| - 2 R h``. Edges beyond the strip ``|n.x - z| <= w = 2 R h`` stay on their side: those
+on the left have given area and first moment once and for all, those on the right are forgotten.
 
 With the area 1, the centroid at the origin and M the first moment of the left half,
 
@@ -130,7 +130,8 @@ def median_at(
     """Return z of the median in direction theta: Newton steps kept inside a bracket."""
     z = min(max(guess, low), high)
     reach = 2e-16 * max(abs(low), abs(high))
-    for _ in range(100):
+    last = np.inf
+    for _ in range(200):
         more, chord = _left_area(edges, kept, known, theta, z)
         excess = known.area + more - 0.5
         if excess > 0.0:
@@ -139,10 +140,12 @@ def median_at(
             high = z
         else:
             return z
-        step = z + excess / chord if chord > 0.0 else 0.5 * (low + high)
-        if not low < step < high:
+        step = z + excess / chord if chord > 0.0 else np.inf
+        # where chords appear or vanish Newton's steps may shrink the bracket too slowly
+        if not low < step < high or abs(step - z) > 0.5 * last:
             step = 0.5 * (low + high)
-        if abs(step - z) <= reach or step in (low, high):
+        last = abs(step - z)
+        if last <= reach or step in (low, high):
             return step
         z = step
     return z
@@ -194,8 +197,11 @@ def state_in(
 def median_in(
     edges: Floats, kept: Ints, view: View, theta: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Return ``(z, U, U', J, chord length, s_m)`` in a direction inside a cell looked at."""
-    low, high = view.z - view.strip, view.z + view.strip
+    """Return ``(z, U, U', J, chord length, s_m)`` in a direction inside a cell looked at.
+
+    Within the bounds of z the edges that are no longer listed are on the side that was noted.
+    """
+    low, high = view.z - 0.5 * view.strip, view.z + 0.5 * view.strip  # |z'| <= R
     guess = view.z - view.middle * (theta - view.theta)
     z = median_at(edges, kept, view.known, theta, guess, low, high)
     energy, slope, second, chord, middle = state_in(edges, kept, view.known, theta, z)
@@ -265,7 +271,7 @@ def look(edges: Floats, radius: float, kept: Ints, cell: Cell) -> View:
 @compiled
 def halves(view: View) -> tuple[Cell, Cell]:
     """Return the halves of a cell, the right one first: a stack then gives the left one first."""
-    low, high = view.z - view.strip, view.z + view.strip
+    low, high = view.z - 0.5 * view.strip, view.z + 0.5 * view.strip  # |z'| <= R
     turn = 0.5 * view.half * view.middle
     left, right = view.theta - view.half, view.theta + view.half
     return (

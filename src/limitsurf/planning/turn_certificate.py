@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.kernels.turn_roots import CLEAR, MONOTONE, ROOT
+from limitsurf.tolerances import ANGLE
 
 __all__ = ["SignChanges", "TurnCertificate", "sign_changes"]
 
@@ -30,7 +31,8 @@ class TurnCertificate:
     bound : int
         Most sign changes that the cells leave room for, unresolved ones aside.
     unresolved : int
-        Intervals in which rounding decides: U' vanishes to higher order, as at a triple root.
+        Intervals wider than `tolerances.ANGLE` in which rounding decides: U' vanishes to higher
+        order, as at a triple root.
     widest : float
         The widest of them [rad].
     residual : float
@@ -97,7 +99,7 @@ def sign_changes(cells: Array) -> SignChanges:
         if changes:
             roots[before < 0.0].append(_root_of(run) if run else row[0])
             bound += 1
-        if run and not _is_monotone(run):
+        if run and run[-1][1] - run[0][0] > ANGLE and not _is_monotone(run):
             unresolved += 1
             widest = max(widest, run[-1][1] - run[0][0])
         run, sign = [], after
