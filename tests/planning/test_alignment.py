@@ -118,8 +118,7 @@ def test_min_margin():
         plan_alignment(part, min_margin=-1.0)
 
 
-def test_neutral_parts_have_no_plan(monkeypatch):
-    monkeypatch.setattr("limitsurf.planning.turn_function.FLAT_MOMENT", 1e-3)
+def test_neutral_parts_have_no_plan():
     with pytest.raises(NoPlan, match="neutral"):
         plan_alignment(Part(shapely.Point(0, 0).buffer(1.0)))
 

@@ -4,7 +4,7 @@ import shapely
 
 from limitsurf.geometry.part import Part
 from limitsurf.planning.squeeze_function import squeeze_function
-from limitsurf.planning.turn_function import TurnFunction, turn_function
+from limitsurf.planning.turn_function import turn_function
 from tests.reference_cases import CASES, NAMES, angle_distance
 
 
@@ -46,7 +46,6 @@ def test_images_are_fixed_and_arrays_broadcast():
 
 def test_neutral_parts_stay():
     disk = Part(shapely.Point(0, 0).buffer(1.0))
-    empty = np.empty(0)
-    squeeze = squeeze_function(TurnFunction(disk, empty, empty, empty, neutral=True))
+    squeeze = squeeze_function(turn_function(disk))
     assert squeeze([0.3, 4.0]) == pytest.approx([0.3, 4.0 - np.pi])
     assert "identity" in repr(squeeze)

@@ -21,7 +21,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
 
-__all__ = ["area_left", "left_areas", "median_offset", "squeeze_states"]
+__all__ = ["area_left", "median_offset", "squeeze_states"]
 
 
 @compiled
@@ -124,14 +124,4 @@ def squeeze_states(edges: Floats, theta: Floats, half_area: float) -> Floats:
     out = np.empty((theta.shape[0], 6))
     for k in range(theta.shape[0]):
         _squeeze_state(edges, theta[k], half_area, out[k])
-    return out
-
-
-@compiled
-def left_areas(edges: Floats, theta: Floats, px: float, py: float) -> Floats:
-    """Return the areas left of the lines through the point ``(px, py)`` in directions `theta`."""
-    out = np.empty(theta.shape[0])
-    for k in range(theta.shape[0]):
-        z = np.cos(theta[k]) * py - np.sin(theta[k]) * px
-        out[k] = area_left(edges, theta[k], z)[0]
     return out

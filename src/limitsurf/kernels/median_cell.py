@@ -67,6 +67,8 @@ class Cell(NamedTuple):
 class View(NamedTuple):
     """The median in the middle of a cell, and what holds in all of it."""
 
+    left: float
+    right: float
     theta: float
     half: float
     z: float
@@ -264,7 +266,21 @@ def look(edges: Floats, radius: float, kept: Ints, cell: Cell) -> View:
     change = half * (abs(slope) + half * max(2.0 * most, radius))  # of U; 0 <= U <= radius
     low, high = 2.0 * least - energy - change, 2.0 * most - energy + change
     return View(
-        theta, half, z, energy, slope, second, chord, middle, strip, low, high, drift, known
+        cell.left,
+        cell.right,
+        theta,
+        half,
+        z,
+        energy,
+        slope,
+        second,
+        chord,
+        middle,
+        strip,
+        low,
+        high,
+        drift,
+        known,
     )
 
 
@@ -273,8 +289,7 @@ def halves(view: View) -> tuple[Cell, Cell]:
     """Return the halves of a cell, the right one first: a stack then gives the left one first."""
     low, high = view.z - 0.5 * view.strip, view.z + 0.5 * view.strip  # |z'| <= R
     turn = 0.5 * view.half * view.middle
-    left, right = view.theta - view.half, view.theta + view.half
     return (
-        Cell(view.theta, right, view.z - turn, low, high, view.known),
-        Cell(left, view.theta, view.z + turn, low, high, view.known),
+        Cell(view.theta, view.right, view.z - turn, low, high, view.known),
+        Cell(view.left, view.theta, view.z + turn, low, high, view.known),
     )

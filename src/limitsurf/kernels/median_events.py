@@ -56,9 +56,9 @@ def median_events(edges: Floats, radius: float) -> tuple[Floats, Ints, Floats]:
             stack.append(right)
             stack.append(left)
             continue
-        z = median_in(edges, kept, view, view.theta + view.half)[0]
+        z = median_in(edges, kept, view, view.right)[0]
         for i in kept[view.known.first : view.known.first + view.known.number]:
-            height = _height(edges, i, view.theta + view.half, z)
+            height = _height(edges, i, view.right, z)
             if abs(height) > _ON_LINE * radius and height * side[i] < 0.0:
                 if used == theta.shape[0]:
                     theta = np.concatenate((theta, np.empty_like(theta)))
@@ -94,7 +94,7 @@ def _near(edges: Floats, kept: Ints, view: View, rounding: float) -> tuple[int, 
 @compiled
 def _passing(edges: Floats, kept: Ints, view: View, i: int, side: float) -> float:
     """Return where the median passes vertex i: Newton steps kept inside a bracket."""
-    left, right = view.theta - view.half, view.theta + view.half
+    left, right = view.left, view.right
     theta = view.theta
     for _ in range(100):
         z, _, _, _, _, middle = median_in(edges, kept, view, theta)

@@ -79,8 +79,8 @@ def _monotone(
     edges: Floats, kept: Ints, view: View, floor: float
 ) -> tuple[int, float, float, float]:
     """Return kind, sign, root and residual of a cell in which U' rises or falls throughout."""
-    before = median_in(edges, kept, view, view.theta - view.half)[2]
-    after = median_in(edges, kept, view, view.theta + view.half)[2]
+    before = median_in(edges, kept, view, view.left)[2]
+    after = median_in(edges, kept, view, view.right)[2]
     if min(abs(before), abs(after)) <= floor:
         return MONOTONE, np.sign(view.low), view.theta, view.slope
     if (before > 0.0) == (after > 0.0):
@@ -92,7 +92,7 @@ def _monotone(
 @compiled
 def _polish(edges: Floats, kept: Ints, view: View, rising: float) -> tuple[float, float]:
     """Return the root of U' in a cell and U' there: Newton steps kept inside a bracket."""
-    left, right = view.theta - view.half, view.theta + view.half
+    left, right = view.left, view.right
     theta, slope, curvature = view.theta, view.slope, 2.0 * view.second - view.energy
     best, least = theta, abs(slope)
     for _ in range(100):

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from limitsurf.geometry.outlines import ring_starts
+
 __all__ = ["MedianPiece", "median_pieces"]
 
 Array = NDArray[np.float64]
@@ -72,9 +74,7 @@ def median_pieces(
 
 def _edges_before(edges: Array) -> NDArray[np.int64]:
     """Return the edge that ends where each edge starts; rings follow one another."""
-    n = len(edges)
-    first = np.append(True, np.any(edges[1:, :2] != edges[:-1, 2:], axis=1))
-    starts = np.flatnonzero(first)
-    before = np.arange(n) - 1
-    before[starts] = np.append(starts[1:], n) - 1
+    starts = ring_starts(edges)
+    before = np.arange(len(edges)) - 1
+    before[starts] = np.append(starts[1:], len(edges)) - 1
     return before

@@ -23,11 +23,13 @@ from limitsurf.kernels.steepest_turn import steepest_turn
 from limitsurf.kernels.turn_roots import slope_signs
 from limitsurf.planning.median_pieces import MedianPiece, median_pieces
 from limitsurf.planning.turn_certificate import TurnCertificate, sign_changes
-from limitsurf.tolerances import ANGLE, FLAT_MOMENT, NEUTRAL
+from limitsurf.tolerances import FLAT_MOMENT, NEUTRAL
 
 __all__ = ["TurnFunction", "turn_function"]
 
 Array = NDArray[np.float64]
+
+_WRAP = 2e-15  # rad; this far below pi is 0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -217,5 +219,5 @@ def _from_start(theta: Array) -> Array:
 def _orientations(theta: Array) -> Array:
     """Return ``-theta`` reduced to [0, pi), ascending."""
     phi = np.mod(-theta, np.pi)
-    phi[np.pi - phi < ANGLE * 1e-3] = 0.0
+    phi[np.pi - phi < _WRAP] = 0.0
     return np.sort(phi)
