@@ -40,6 +40,7 @@ __all__ = [
 CELLS = 16  # into which a half turn is cut to begin with
 LEVELS = 60  # of halvings, at most; LEAST ends them before
 LEAST = 2.0**-50  # half width of a cell [rad] that is not cut any more
+_AREA_ROUNDING = 2e-16  # of half the area
 START = 0.5772156649015329  # no direction that a symmetric part might single out
 
 
@@ -136,13 +137,13 @@ def median_at(
     for _ in range(200):
         more, chord = _left_area(edges, kept, known, theta, z)
         excess = known.area + more - 0.5
+        step = z + excess / chord if chord > 0.0 else np.inf
+        if abs(excess) <= _AREA_ROUNDING:
+            return step if low < step < high else z
         if excess > 0.0:
             low = z
-        elif excess < 0.0:
-            high = z
         else:
-            return z
-        step = z + excess / chord if chord > 0.0 else np.inf
+            high = z
         # where chords appear or vanish Newton's steps may shrink the bracket too slowly
         if not low < step < high or abs(step - z) > 0.5 * last:
             step = 0.5 * (low + high)

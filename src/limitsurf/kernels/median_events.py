@@ -107,7 +107,7 @@ def _passing(edges: Floats, kept: Ints, view: View, i: int, side: float) -> floa
         step = theta - height / lever if lever != 0.0 else left
         if not left < step < right:
             step = 0.5 * (left + right)
-        if abs(step - theta) <= 2e-16 or step in (left, right):
+        if abs(step - theta) <= 1e-15 or step in (left, right):
             return step
         theta = step
     return theta
