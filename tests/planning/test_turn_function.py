@@ -2,6 +2,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 import shapely.ops
 
 from limitsurf.errors import InputError
@@ -10,6 +11,7 @@ from limitsurf.kernels.median import squeeze_states
 from limitsurf.planning.turn_function import turn_function
 from tests.planning.turn_shapes import (
     KINDS,
+    convex,
     random_part,
     ring,
     scan_signs,
@@ -251,6 +253,13 @@ def test_disks_and_zindler_curves_are_neutral(part):
     assert np.all(turn(turn.stable - 0.2 * gap) == 1)
 
 
+def test_a_disk_of_very_many_sides_has_no_equilibria_but_rounding():
+    turn = turn_function(polygon(100_000))
+    assert turn.neutral
+    assert len(turn.stable) == len(turn.unstable) == 0
+    assert turn.certificate.unresolved == 1
+
+
 @pytest.mark.parametrize("n", [5, 16, 49])
 def test_neutral_is_a_matter_of_the_angle_asked_for(n):
     turn = turn_function(polygon(n))
@@ -363,6 +372,24 @@ def test_sides_are_cut_as_the_pieces_say():
             assert sum(p.right - p.left for p in turn.pieces) == pytest.approx(np.pi, abs=1e-11)
             assert all(p.right > p.left for p in turn.pieces)
             assert np.all(np.diff(turn.breakpoints) > 0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_two_pieces_of_equal_area(seed):
+    """The line may lie anywhere in the gap between them; U has one value all the same."""
+    rng = np.random.default_rng(seed)
+    piece = shapely.Polygon(convex(rng, 6))
+    turned = shapely.affinity.rotate(piece, [0, 180, 37][seed % 3])
+    part = Part(shapely.MultiPolygon([piece, shapely.affinity.translate(turned, 12, seed)]))
+    turn = turn_function(part)
+    assert_equilibria_are_the_sign_changes_of_a_scan(turn)
+    assert turn.certificate.complete
+    theta = np.linspace(0, np.pi, 500)
+    slow = squeeze_states(part.unit_edges, theta, 0.5)
+    assert slow[:, 4].min() < 1e-7  # in the gap, or at a tip beside it
+    assert turn.potential(-theta) == pytest.approx(slow[:, 1] * part.area**1.5, rel=1e-13)
+    assert turn.moment(-theta) == pytest.approx(slow[:, 2] * part.area**1.5, abs=1e-12)
+    assert sum(p.right - p.left for p in turn.pieces) == pytest.approx(np.pi)
 
 
 def test_median_turns_with_the_part(rng):

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from limitsurf.geometry.outlines import ring_starts
+from limitsurf.kernels.median import squeeze_states
 
-__all__ = ["MedianPiece", "median_pieces"]
+__all__ = ["MedianPiece", "crossed_in_the_middle", "median_pieces"]
 
 Array = NDArray[np.float64]
 
@@ -70,6 +71,22 @@ def median_pieces(
         ),
         key=lambda piece: piece.left,
     )
+
+
+def crossed_in_the_middle(edges: Array, pieces: list[MedianPiece]) -> list[MedianPiece]:
+    """Return the pieces with the edges that a median in the middle of each crosses.
+
+    For parts with halves on two sides of a gap, where the median is not unique and the events do
+    not tell the edges; one sum over all edges a piece.
+    """
+    theta = np.array([-0.5 * (piece.left + piece.right) for piece in pieces])
+    offsets = squeeze_states(edges, theta, 0.5)[:, 0]
+    crossed = []
+    for angle, z, piece in zip(theta, offsets, pieces, strict=True):
+        left = np.cos(angle) * edges[:, 1::2] - np.sin(angle) * edges[:, ::2] > z
+        cut = np.flatnonzero(left[:, 0] != left[:, 1])
+        crossed.append(replace(piece, edges=tuple(cut.tolist())))
+    return crossed
 
 
 def _edges_before(edges: Array) -> NDArray[np.int64]:

@@ -21,7 +21,7 @@ from limitsurf.kernels.median_events import median_events
 from limitsurf.kernels.median_states import median_states
 from limitsurf.kernels.steepest_turn import steepest_turn
 from limitsurf.kernels.turn_roots import slope_signs
-from limitsurf.planning.median_pieces import MedianPiece, median_pieces
+from limitsurf.planning.median_pieces import MedianPiece, crossed_in_the_middle, median_pieces
 from limitsurf.planning.turn_certificate import TurnCertificate, sign_changes
 from limitsurf.tolerances import FLAT_MOMENT, NEUTRAL
 
@@ -30,6 +30,7 @@ __all__ = ["TurnFunction", "turn_function"]
 Array = NDArray[np.float64]
 
 _WRAP = 2e-15  # rad; this far below pi is 0
+_GAP = 1e-6  # chord, at area 1, of a median that may lie anywhere between two halves
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -146,10 +147,14 @@ class TurnFunction:
         """Intervals of orientations in which the median crosses the same edges.
 
         A vertex within 1e-12 of the line, relative to the part's size, may be put on either side.
+        Where the median is not unique, between two pieces of equal area, any of them counts.
         """
         theta, vertex, side = median_events(*_unit_part(self.part))
         order = np.argsort(theta)
-        return median_pieces(self.part.unit_edges, theta[order], vertex[order], side)
+        edges = self.part.unit_edges
+        pieces = median_pieces(edges, theta[order], vertex[order], side)
+        chords = self._states([0.5 * (piece.left + piece.right) for piece in pieces])[:, 4]
+        return pieces if chords.min() > _GAP else crossed_in_the_middle(edges, pieces)
 
     def __repr__(self) -> str:
         """Return the equilibria in degrees."""
@@ -207,8 +212,10 @@ def _unit_part(part: Part) -> tuple[Array, float]:
 
 
 def _rounding(part: Part) -> float:
-    """Return the size of U' at area 1 that is rounding."""
-    return FLAT_MOMENT * max(1.0, float(part.circumradius / part.area**0.5))
+    """Return the size of U' at area 1 that is rounding: of the largest terms, of many terms."""
+    radius = float(part.circumradius / part.area**0.5)
+    terms = 0.1 * float(np.sqrt(len(part.edges)))
+    return FLAT_MOMENT * max(1.0, radius) * max(1.0, terms)
 
 
 def _from_start(theta: Array) -> Array:
