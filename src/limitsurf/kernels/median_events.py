@@ -11,15 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
-from limitsurf.kernels.median_cell import (
-    START,
-    View,
-    halves,
-    look,
-    median_at,
-    median_in,
-    whole_turn,
-)
+from limitsurf.kernels.median_cell import START, median_at, whole_turn
+from limitsurf.kernels.median_view import View, halves, look, median_in
 
 __all__ = ["median_events"]
 

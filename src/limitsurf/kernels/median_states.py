@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.median_cell import LEAST, halves, look, median_at, state_in, whole_turn
+from limitsurf.kernels.median_cell import LEAST, median_at, state_in, whole_turn
+from limitsurf.kernels.median_view import halves, look
 
 __all__ = ["median_states"]
 

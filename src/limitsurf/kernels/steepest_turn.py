@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
-from limitsurf.kernels.median_cell import LEAST, View, halves, look, whole_turn
+from limitsurf.kernels.median_cell import LEAST, whole_turn
+from limitsurf.kernels.median_view import View, halves, look
 
 __all__ = ["steepest_turn"]
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
-from limitsurf.kernels.median_cell import LEAST, View, halves, look, median_in, whole_turn
+from limitsurf.kernels.median_cell import LEAST, whole_turn
+from limitsurf.kernels.median_view import View, halves, look, median_in
 
 __all__ = ["CLEAR", "FLAT", "MONOTONE", "ROOT", "slope_signs"]
 

@@ -5,7 +5,8 @@ import pytest
 
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.median import area_left, median_offset, squeeze_states
-from limitsurf.kernels.median_cell import CELLS, START, halves, look, median_in, whole_turn
+from limitsurf.kernels.median_cell import CELLS, START, whole_turn
+from limitsurf.kernels.median_view import halves, look, median_in
 from tests.planning.turn_shapes import KINDS, random_part, ring, size_and_edges
 
 
