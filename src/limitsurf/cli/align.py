@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 import time
@@ -33,6 +34,9 @@ def align(
     unit: Annotated[
         str | None, typer.Option(help="Length of one unit of the outline, such as mm.")
     ] = None,
+    pieces: Annotated[
+        bool, typer.Option("--pieces", help="Several outlines are pieces of one rigid part.")
+    ] = False,
     voltage: Annotated[
         str | None, typer.Option(help="Drive voltage, such as 50 or '50 V'; else the model's.")
     ] = None,
@@ -40,6 +44,16 @@ def align(
     seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for plan.json, runs.nc and report.html.")
+    ] = None,
+    model: Annotated[
+        Literal["squeeze", "centred", "push-squeeze", "unknown-offset"],
+        typer.Option(help="How the steps are executed, and what the plan allows for."),
+    ] = "squeeze",
+    lines: Annotated[
+        str | None, typer.Option(help="Angles that lines may take, such as '0, 45, 90 deg'.")
+    ] = None,
+    goal: Annotated[
+        str | None, typer.Option(help="Orientation at the end, such as '30 deg'.")
     ] = None,
     method: Annotated[
         Literal["dither", "nearest"],
@@ -63,20 +77,20 @@ def align(
     from limitsurf.actuators.actuator_array import load_array
     from limitsurf.geometry.part import Part
     from limitsurf.planning.alignment import plan_alignment
-    from limitsurf.planning.turn_function import turn_function
     from limitsurf.planning.verification import verify_alignment
-    from limitsurf.units import parse_quantity
 
     begin = time.perf_counter()
     _check_out(out)
-    the_part = Part.from_file(part, unit=unit, areal_density=areal_density)
-    volts = None if voltage is None else parse_quantity(_number(voltage), "V", name="voltage")
-    the_array = load_array(array, voltage=volts)
-    offset = (
-        None if start_offset is None else parse_quantity(start_offset, "m", name="start_offset")
+    the_part = Part.from_file(part, unit=unit, areal_density=areal_density, pieces=pieces)
+    the_array = load_array(array, voltage=_optional(voltage, "V", "voltage"))
+    offset = _optional(start_offset, "m", "start_offset")
+    plan = plan_alignment(
+        the_part,
+        model=model,
+        lines=None if lines is None else _angles(lines),
+        min_margin=_optional(min_margin, "rad", "min_margin") or 0.0,
+        goal=_optional(goal, "rad", "goal"),
     )
-    margin = parse_quantity(min_margin, "rad", name="min_margin")
-    plan = plan_alignment(the_part, min_margin=margin)
     if push == "computed":
         the_array = the_array.running_under(the_part)
     verification = verify_alignment(
@@ -90,23 +104,46 @@ def align(
         start_offset=offset,
         progress=True,
     )
-    turn = turn_function(the_part)
-    if out is not None:
-        _write(out, turn, verification)
-    _print(turn, verification, time.perf_counter() - begin)
-    if out is not None:
-        typer.echo(f"wrote {', '.join(str(out / name) for name in _FILES)}")
+    _report(verification, out, begin)
 
 
 _FILES = ("plan.json", "runs.nc", "report.html")
 
 
-def _number(text: str) -> str | float:
-    """Return a bare number as a float, which is then in the SI unit."""
+def _optional(text: str | None, unit: str, name: str) -> float | None:
+    """Return a quantity in the SI unit, in which a bare number is already; None if not given."""
+    from limitsurf.units import parse_quantity
+
+    if text is None:
+        return None
     try:
-        return float(text)
+        value: str | float = float(text)
     except ValueError:
-        return text
+        value = text
+    return parse_quantity(value, unit, name=name)
+
+
+def _angles(text: str) -> list[float]:
+    """Return the angles of a list such as '0, 45, 90 deg' [rad]; the last unit is everyone's."""
+    from limitsurf.units import parse_quantity
+
+    *words, last = re.split(r"\s*,\s*", text.strip())
+    unit = re.sub(r"^[-+.\d]*", "", last)
+    return [parse_quantity(f"{word}{unit}", "rad", name="lines") for word in words] + [
+        parse_quantity(last, "rad", name="lines")
+    ]
+
+
+def _report(verification: Verification, out: Path | None, begin: float) -> None:
+    """Write the files, if there is a folder for them, and print what came out."""
+    from limitsurf.planning.turn_function import turn_function
+
+    turn = turn_function(verification.part)
+    if out is not None:
+        _write(out, turn, verification)
+    _print(turn, verification, time.perf_counter() - begin)
+    if out is not None:
+        typer.echo(f"wrote {', '.join(str(out / name) for name in _FILES)}")
 
 
 def _check_out(out: Path | None) -> None:
