@@ -13,8 +13,6 @@ matrix of size three is inverted.
 
 from __future__ import annotations
 
-import numpy as np
-
 from limitsurf.kernels.compile import Floats, compiled
 from limitsurf.kernels.contact_problem import Rows, inverse_rows, times_rows
 from limitsurf.kernels.feet_rates import Feet, Freedom, Rate, curvature, rate, turning_about
@@ -24,6 +22,7 @@ from limitsurf.kernels.symmetric3 import Symmetric, times
 from limitsurf.kernels.vectors import Vector, along, scaled
 
 __all__ = ["rosenbrock_step"]
+
 
 @compiled
 def _jacobian(feet: Feet, freedom: Freedom, v: Vector, H: Symmetric) -> Rows:

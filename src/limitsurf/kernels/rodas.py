@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["A", "ALPHA", "C", "GAMMA", "RATES"]
+__all__ = ["ALPHA", "GAMMA", "RATES", "A", "C"]
 
 GAMMA = 0.25
 ALPHA = np.array([0.0, 0.386, 0.21, 0.63, 1.0, 1.0])

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, Ints, compiled
-from limitsurf.kernels.median import median_offset, squeeze_states
+from limitsurf.kernels.median import squeeze_states
 from limitsurf.kernels.rodas import GAMMA, A, C
 from limitsurf.kernels.squeeze_energy import squeeze_energy
 
@@ -77,7 +77,7 @@ def flow_step(
 def _growth(at: Rate, sign: float) -> float:
     """Return the rate at which the fastest growing deviation grows; 0 if none does."""
     middle, half = -0.5 * sign * (at[4] + at[6]), 0.5 * (at[4] - at[6])
-    return max(0.0, middle + np.hypot(half, at[5]))
+    return max(0.0, middle + float(np.hypot(half, at[5])))
 
 
 @compiled

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.squeeze_flow import MOVING, STABLE, flow_trace, settle
+from limitsurf.kernels.squeeze_flow import MOVING, flow_trace, settle
 from limitsurf.sets.arguments import as_number, writable
 
 __all__ = ["IdealSqueeze", "SqueezePath", "as_mobility_ratio", "turning_mobility"]

@@ -249,12 +249,12 @@ def _event(part: Part, ratio: float, rows: Array, column: int, value: float) -> 
     """Return the row between two at which a column has a value: a shorter step from the first."""
     edges, kappa = writable(part.unit_edges), turning_mobility(part, ratio)
     if np.array_equal(rows[0, _ANGLE:], rows[1, _ANGLE:]):  # straight: at rest or beyond the part
-        return rows[0]
+        return np.asarray(rows[0])
     length = rows[1, 0] - rows[0, 0]
 
     def row(h: float) -> Array:
         if h <= 0.0:
-            return rows[0]
+            return np.asarray(rows[0])
         return np.array([rows[0, 0] + h, *flow_to(edges, kappa, -1.0, rows[0, 1:3].copy(), h)])
 
     def excess(h: float) -> float:
