@@ -133,10 +133,20 @@ class OutsideSupports(LimitSurfError):
 
 
 class NoPlan(LimitSurfError):
-    """No sequence of lines meets the request; `reachable_margin` [rad] says what does."""
+    """No sequence of lines meets the request.
 
-    def __init__(self, reason: str, reachable_margin: float) -> None:
-        self.reason, self.reachable_margin = reason, reachable_margin
+    Parameters
+    ----------
+    reason : str
+        Why, with angles in degrees.
+    reachable_margin : float
+        The largest margin of any plan [rad]; 0 if there is no plan.
+    plan : LinePlan, optional
+        The plan that comes closest to the request, if there is one.
+    """
+
+    def __init__(self, reason: str, reachable_margin: float, plan: Any = None) -> None:
+        self.reason, self.reachable_margin, self.plan = reason, reachable_margin, plan
         super().__init__(reason)
 
 

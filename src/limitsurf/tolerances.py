@@ -15,6 +15,7 @@ __all__ = [
     "FLATTEN",
     "FLAT_MOMENT",
     "GIVEN_LOAD",
+    "GOAL",
     "LINE_MARGIN",
     "NEUTRAL",
     "REST_SPEED",
@@ -38,6 +39,10 @@ CONTACT_STEP: Final = 1e-9
 
 #: Chord error when curves of a drawing become polygons, relative to the drawing's diagonal.
 FLATTEN: Final = 2e-4
+
+#: How far the end of a plan on given lines may be from its goal [rad]: goals are copied from
+#: messages with five decimals of a degree, or rounded by hand, and no array is that accurate.
+GOAL: Final = 1e-6
 
 #: A plan whose margin is below this is no plan: rounding alone could break it.
 LINE_MARGIN: Final = 1e-9

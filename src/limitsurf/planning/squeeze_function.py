@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from limitsurf.planning.turn_function import TurnFunction
 from limitsurf.tolerances import ANGLE
 
-__all__ = ["SqueezeFunction", "squeeze_function"]
+__all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
 
 Array = NDArray[np.float64]
 
@@ -41,6 +41,11 @@ class SqueezeFunction:
     period: float
     modulus: float = np.pi
 
+    @property
+    def steps(self) -> int:
+        """Number of steps in one period."""
+        return round(len(self.breaks) * self.period / self.modulus)
+
     def __call__(self, phi: ArrayLike) -> Array:
         """Return the orientation after a squeeze towards a line at world angle 0, reduced.
 
@@ -61,13 +66,29 @@ class SqueezeFunction:
         return f"SqueezeFunction({steps or 'identity'}; period {np.degrees(self.period):.4g} deg)"
 
 
-def squeeze_function(turn: TurnFunction) -> SqueezeFunction:
+class EquilibriaOfSqueeze(Protocol):
+    """What a squeeze function is made from: a turn function or a diameter function."""
+
+    @property
+    def stable(self) -> Array:
+        """Stable orientations, ascending in [0, pi)."""
+
+    @property
+    def unstable(self) -> Array:
+        """Unstable orientations, ascending in [0, pi), as many."""
+
+    @property
+    def neutral(self) -> bool:
+        """Whether there are neither."""
+
+
+def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     """Return the squeeze function that belongs to a turn function.
 
     Parameters
     ----------
-    turn : TurnFunction
-        From `turn_function`.
+    turn : TurnFunction or DiameterFunction
+        From `turn_function` or `diameter_function`.
 
     Examples
     --------
@@ -81,20 +102,26 @@ def squeeze_function(turn: TurnFunction) -> SqueezeFunction:
     before_first = turn.stable < turn.unstable[0]
     images = np.sort(np.where(before_first, turn.stable + np.pi, turn.stable))
     ends = np.append(turn.unstable[1:], turn.unstable[:1] + np.pi)
-    return SqueezeFunction(turn.unstable, ends, images, _period(turn.unstable, images))
+    return SqueezeFunction(
+        turn.unstable, ends, images, smallest_period(turn.unstable, ends, images, np.pi)
+    )
 
 
-def _period(breaks: Array, images: Array) -> float:
-    """Return the smallest pi/d under which the steps map onto one another."""
+def smallest_period(breaks: Array, ends: Array, images: Array, modulus: float) -> float:
+    """Return the smallest ``modulus / d`` under which the steps map onto one another.
+
+    Each divisor d of their number costs one pass over the steps. Two steps whose places differ by
+    less than `tolerances.ANGLE` are taken for images of one another.
+    """
     k = len(breaks)
     for copies in range(k, 1, -1):
         if k % copies:
             continue
-        shift, turn = k // copies, np.pi / copies
+        shift, turn = k // copies, modulus / copies
         same = all(
-            np.max(np.abs(np.append(x[shift:], x[:shift] + np.pi) - x - turn)) <= ANGLE
-            for x in (breaks, images)
+            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= ANGLE
+            for x in (breaks, ends, images)
         )
         if same:
             return float(turn)
-    return float(np.pi)
+    return float(modulus)

@@ -1,0 +1,105 @@
+"""Lines that bring all orientations to one, from any step function."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from limitsurf.errors import InputError, NoPlan
+from limitsurf.planning.free_lines import plan_free_lines
+from limitsurf.planning.given_lines import GivenLines, fewest_lines, plan_through, safest_lines
+from limitsurf.planning.line_plan import LinePlan
+from limitsurf.planning.no_plan import no_plan_on
+from limitsurf.planning.squeeze_function import SqueezeFunction
+from limitsurf.sets.arguments import as_array, as_count, as_number
+from limitsurf.tolerances import ANGLE, GOAL, LINE_MARGIN
+
+__all__ = ["plan_lines"]
+
+Array = NDArray[np.float64]
+
+
+def plan_lines(
+    squeeze: SqueezeFunction,
+    *,
+    lines: ArrayLike | int | None = None,
+    min_margin: float = 0.0,
+    goal: float | None = None,
+) -> LinePlan:
+    """Return the fewest lines that bring all orientations to one, with the largest least margin.
+
+    Parameters
+    ----------
+    squeeze : SqueezeFunction
+        What a squeeze towards a line does.
+    lines : (L,) float or int, optional
+        World angles that may be used [rad], or their number if they are evenly spaced over the
+        modulus; any angles if not given.
+    min_margin : float
+        Least error of a line's angle [rad] that every step has to tolerate.
+    goal : float, optional
+        Orientation at the end [rad], modulo the period; to 1e-6 rad if `lines` are given.
+
+    Raises
+    ------
+    NoPlan
+        No plan meets the request: says why, what is reachable, and what would help.
+    InputError
+        Lines that are repeated, not finite or none; a margin below 0; a goal that is not finite.
+
+    Examples
+    --------
+    The plan for Fig. 3 of the paper: a gripper aligns a rectangle in two squeezes.
+
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.diameter_function import diameter_function
+    >>> from limitsurf.planning.squeeze_function import squeeze_function
+    >>> rectangle = Part([(0, 0), (2, 0), (2, 1), (0, 1)])
+    >>> squeeze = squeeze_function(diameter_function(rectangle))
+    >>> plan_lines(squeeze)
+    LinePlan(lines at 0.00, 71.57 deg, margin 18.43 deg)
+    >>> plan_lines(squeeze, lines=4, goal=0.0)
+    LinePlan(lines at 45.00, 90.00 deg, margin 18.43 deg)
+    """
+    margin = as_number("min_margin", min_margin)
+    if not (np.isfinite(margin) and margin >= 0.0):
+        raise InputError("min_margin", "must be at least 0 rad", value=min_margin)
+    end = None if goal is None else as_number("goal", goal)
+    if end is not None and not np.isfinite(end):
+        raise InputError("goal", "must be a finite angle in radians", value=goal)
+    given = None if lines is None else _given_lines(squeeze, lines)
+    if squeeze.steps == 0:
+        raise NoPlan("squeeze: it has no steps: nothing turns, so nothing is aligned", 0.0)
+    if given is None:
+        return plan_free_lines(squeeze, margin, end)
+    return _plan_given_lines(given, margin, end)
+
+
+def _given_lines(squeeze: SqueezeFunction, lines: ArrayLike | int) -> GivenLines:
+    """Check a set of lines."""
+    modulus = squeeze.modulus
+    if np.ndim(lines) == 0:
+        n = as_count("lines", lines)
+        return GivenLines(squeeze, np.linspace(0.0, modulus, n, endpoint=False))
+    angles = np.mod(as_array("lines", lines, None), modulus)
+    if len(angles) == 0:
+        raise InputError("lines", "are none", remedy="give at least one angle")
+    order = np.argsort(angles)
+    gaps = np.diff(angles[order], append=angles[order[0]] + modulus)
+    if len(angles) > 1 and gaps.min() <= ANGLE:
+        n = int(np.argmin(gaps))
+        same = sorted((int(order[n]), int(order[(n + 1) % len(order)])))
+        raise InputError(
+            "lines",
+            f"numbers {same[0]} and {same[1]} are one line, modulo {np.degrees(modulus):g} deg",
+            remedy="give each once",
+        )
+    return GivenLines(squeeze, angles)
+
+
+def _plan_given_lines(given: GivenLines, min_margin: float, goal: float | None) -> LinePlan:
+    targets = given.targets(goal, GOAL)
+    nodes = fewest_lines(given, max(min_margin, LINE_MARGIN), targets)
+    if nodes is None:
+        raise no_plan_on(given, min_margin, goal)
+    return plan_through(given, safest_lines(given, nodes, targets, len(nodes)))
