@@ -24,7 +24,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.squeeze_flow import STABLE
 from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.separatrices import Separatrix, separatrices
-from limitsurf.planning.squeeze_function import SqueezeFunction, squeeze_function
+from limitsurf.planning.squeeze_function import SqueezeFunction, smallest_period, squeeze_function
 from limitsurf.planning.turn_function import turn_function
 
 __all__ = ["centred_squeeze_function", "shift_squeeze_function", "unknown_offset_function"]
@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 #: (offset [m], orientation [rad]) of a point of a separatrix.
 Point = tuple[float, float]
 
-_SAME = 1e-8  # rad; steps closer than this map onto one another
-_SYMMETRIC = 1e-6  # rad; the same where the part itself is symmetric, to 1e-9
+_STEP_ERROR = 1e-11
+_SYMMETRIC = 1e-6  # rad; steps of a symmetric part that lie this close map onto one another
 _NEAR_IMAGE = 1e-4  # rad; a motion that rests at a stable orientation ends this close to it
 _SURE = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5)  # rad on both sides of a border at which motions check it
 
@@ -68,7 +68,7 @@ def shift_squeeze_function(
     Examples
     --------
     >>> shift_squeeze_function(Part([(0, 0), (3, 0), (0, 4)]))
-    SqueezeFunction([83.01, 281.14) -> 161.57, [281.14, 443.01) -> 341.57; period 360 deg)
+    SqueezeFunction([156.14, 322.85) -> 241.93, [322.85, 516.14) -> 421.93; period 360 deg)
     """
     if side not in ("left", "right"):
         raise InputError("side", "must be 'left' or 'right'", value=side)
@@ -105,7 +105,7 @@ def unknown_offset_function(part: Part, mobility_ratio: float = 1.0) -> SqueezeF
     Examples
     --------
     >>> unknown_offset_function(Part([(0, 0), (3, 0), (0, 4)]))
-    SqueezeFunction([101.14, 263.01) -> 161.57; period 180 deg)
+    SqueezeFunction([156.14, 322.85) -> 241.93; period 180 deg)
     """
     bands = [curve.extremes for curve in separatrices(part, mobility_ratio)]
     reach = 1.01 * part.circumradius
@@ -171,7 +171,7 @@ def _confirm_middles(
 
 def _images(part: Part, drive: IdealSqueeze, offset: float, phi: Array) -> Array:
     """Return where motions come to rest, not reduced; NaN if not at a strict minimum."""
-    _, ends, status = drive.settle(part, offset, phi)
+    _, ends, status = drive.settle(part, offset, phi, _STEP_ERROR)
     return np.where(status == STABLE, ends, np.nan)
 
 
@@ -179,24 +179,21 @@ def _in_order(steps: Array, modulus: float, part: Part) -> SqueezeFunction:
     """Return steps whose breaks ascend within one modulus, equal ones in the order of images."""
     steps = steps - modulus * np.floor(steps[:, :1] / modulus)
     steps = steps[np.lexsort((steps[:, 2], steps[:, 0]))]
-    breaks, ends, images = np.ascontiguousarray(steps.T)
-    return SqueezeFunction(breaks, ends, images, _period(steps, modulus, part), modulus)
+    order = part.symmetry_order
+    copies = order // 2 if modulus == np.pi and order % 2 == 0 else order
+    breaks, ends, images = np.ascontiguousarray(_symmetric(steps, modulus, copies).T)
+    period = smallest_period(breaks, ends, images, modulus)
+    return SqueezeFunction(breaks, ends, images, period, modulus)
 
 
-def _period(steps: Array, modulus: float, part: Part) -> float:
-    """Return the smallest part of the modulus under which the steps map onto one another.
-
-    A symmetry of the part must be one of the steps, unless rounding has broken it.
-    """
-    k, order = len(steps), part.symmetry_order
-    symmetry = order // 2 if modulus == np.pi and order % 2 == 0 else order
-    for copies in range(k, symmetry - 1, -1):
-        shift, turn = k // copies, modulus / copies
-        moved = np.vstack([steps[shift:], steps[:shift] + modulus])
-        same = _SYMMETRIC if copies == symmetry else _SAME
-        if k % copies == 0 and np.max(np.abs(moved - steps - turn)) <= same:
-            return turn
-    raise SolveFailed(
-        f"the borders of the basins do not have the part's symmetry of order {order}: they hang "
-        "on rounding; use a smaller mobility_ratio"
-    )
+def _symmetric(steps: Array, modulus: float, copies: int) -> Array:
+    """Return steps that repeat exactly, `copies` times, as the part's symmetry wants it."""
+    turns = modulus / copies * np.arange(copies)[:, None, None]
+    whole = len(steps) % copies == 0
+    base = steps.reshape(copies, -1, 3) - turns if whole else steps[None]
+    if not whole or np.ptp(base, axis=0).max() > _SYMMETRIC:
+        raise SolveFailed(
+            f"the borders of the basins are not {copies} times symmetric, as the part is: they "
+            "hang on rounding; use a smaller mobility_ratio"
+        )
+    return np.asarray((base.mean(axis=0) + turns).reshape(-1, 3))

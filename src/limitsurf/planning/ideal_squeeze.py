@@ -21,8 +21,7 @@ __all__ = ["IdealSqueeze", "SqueezePath", "as_mobility_ratio", "turning_mobility
 
 Array = NDArray[np.float64]
 
-#: Error of one step of the motion; lengths relative to the side of a square of the part's area.
-STEP_ERROR = 1e-10
+_STEP_ERROR = 1e-8
 
 _LEAST_RATIO, _LARGEST_RATIO = 1e-6, 1e6
 
@@ -71,8 +70,8 @@ class IdealSqueeze:
 
     >>> card = Part([(0, 0), (2, 0), (2, 1), (0, 1)])
     >>> offset, phi = IdealSqueeze().rest(card, 0.3, [0.4, 1.5])
-    >>> (phi + 0.0).round(12).tolist()
-    [0.0, 0.0]
+    >>> bool(abs(phi).max() < 1e-12)
+    True
     """
 
     mobility_ratio: float = 1.0
@@ -110,11 +109,13 @@ class IdealSqueeze:
         return z, angle
 
     def settle(
-        self, part: Part, offset: ArrayLike, phi: ArrayLike
+        self, part: Part, offset: ArrayLike, phi: ArrayLike, step_error: float = _STEP_ERROR
     ) -> tuple[Array, Array, NDArray[np.int32]]:
         """Return what `rest` does, and how each motion ended, without an error.
 
         `STABLE` in a strict minimum of the potential, `FLAT` where no force is left, or `MOVING`.
+        `step_error` [rad], for lengths relative to the side of a square of the part's area, blurs
+        the borders of the basins; where a motion ends is exact.
         """
         z, angle = np.broadcast_arrays(
             np.asarray(offset, dtype=np.float64), np.asarray(phi, dtype=np.float64)
@@ -124,7 +125,7 @@ class IdealSqueeze:
         unit = part.area**0.5
         starts = np.column_stack([z.ravel() / unit, -angle.ravel()])
         edges, kappa = writable(part.unit_edges), turning_mobility(part, self.mobility_ratio)
-        ends, status = settle(edges, kappa, starts, STEP_ERROR)
+        ends, status = settle(edges, kappa, starts, step_error)
         return (
             (unit * ends[:, 0]).reshape(z.shape),
             -ends[:, 1].reshape(z.shape),
@@ -141,7 +142,7 @@ class IdealSqueeze:
         if not np.isfinite(start).all():
             raise InputError("offset, phi", "must be finite")
         edges, kappa = writable(part.unit_edges), turning_mobility(part, self.mobility_ratio)
-        rows, status = flow_trace(edges, kappa, 1.0, start, STEP_ERROR)
+        rows, status = flow_trace(edges, kappa, 1.0, start, _STEP_ERROR)
         path = SqueezePath(unit * rows[:, 0], unit * rows[:, 1], -rows[:, 2])
         if status == MOVING:
             raise SolveFailed("the motion did not come to rest", path)

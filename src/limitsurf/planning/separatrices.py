@@ -165,7 +165,7 @@ def boundary_shift(part: Part, mobility_ratio: float = 1.0) -> float:
     --------
     >>> t = Part([(0, 0), (1, 0), (1, 3), (2.5, 3), (2.5, 4), (-1.5, 4), (-1.5, 3), (0, 3)])
     >>> float(np.degrees(boundary_shift(t)).round(2))
-    0.0
+    14.36
     """
     strays = [
         abs(phi - curve.saddle[1])
