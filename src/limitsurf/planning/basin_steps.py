@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 #: (offset [m], orientation [rad]) of a point of a separatrix.
 Point = tuple[float, float]
 
-_STEP_ERROR = 1e-11
+_STEP_ERROR = 1e-9
 _SYMMETRIC = 1e-6  # rad; steps of a symmetric part that lie this close map onto one another
 _NEAR_IMAGE = 1e-4  # rad; a motion that rests at a stable orientation ends this close to it
 _SURE = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5)  # rad on both sides of a border at which motions check it
