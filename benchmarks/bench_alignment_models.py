@@ -1,5 +1,4 @@
-"""How plans fare in the ideal squeeze field: under the model they were made for, and 2PHASE plans
-under full motion.
+"""How plans fare in the ideal squeeze field: under their own models, 2PHASE ones under full motion.
 
 Usage: python benchmarks/bench_alignment_models.py [starts]
 """
