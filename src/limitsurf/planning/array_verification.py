@@ -12,8 +12,10 @@ from rich.progress import track
 
 from limitsurf.actuators.activation import Activation, Method, squeeze_activation
 from limitsurf.actuators.actuator_array import ActuatorArray
-from limitsurf.errors import InputError
+from limitsurf.actuators.force_fields import elliptic_field, squeeze_field
+from limitsurf.actuators.realised_field import activate
 from limitsurf.geometry.part import Part
+from limitsurf.motion.in_turn import joined
 from limitsurf.motion.options import Mode
 from limitsurf.motion.simulate import simulate
 from limitsurf.motion.starts import check_room, random_starts
@@ -29,6 +31,8 @@ __all__ = ["ArrayVerification", "verify_on_array"]
 
 Array = NDArray[np.float64]
 
+_BESIDE = 1.1  # of the circumradius: from the centre to a line that passes a centred part
+
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ArrayVerification(Verification):
@@ -36,8 +40,8 @@ class ArrayVerification(Verification):
 
     Attributes
     ----------
-    activations : tuple of Activation
-        One for each line.
+    stages : tuple of tuple of Activation
+        For each line what runs one after the other, the squeeze last.
     mode : {"inertial", "quasi-static"}
         How the part moved.
     durations : (n, k) float
@@ -46,15 +50,20 @@ class ArrayVerification(Verification):
         Largest certified error of the frictional load in each run, over the part's weight.
     """
 
-    activations: tuple[Activation, ...]
+    stages: tuple[tuple[Activation, ...], ...]
     mode: Mode
     durations: Array
     worst_errors: Array
 
+    @property
+    def activations(self) -> tuple[Activation, ...]:
+        """The squeeze of each line."""
+        return tuple(stages[-1] for stages in self.stages)
+
     def replay(self, run: int, *, frames: int = 60) -> list[Trajectory]:
         """Simulate one run again and return its trajectory on each line."""
         self.check_run(run)
-        return _execute(self.part, self.activations, self.poses[run, 0], self.mode, frames)
+        return _execute(self.part, self.stages, self.poses[run, 0], self.mode, frames)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return all runs as an xarray dataset with units."""
@@ -103,28 +112,21 @@ def verify_on_array(
     jobs: int,
 ) -> ArrayVerification:
     """Do what `verify_alignment` does on an array."""
-    if plan.model not in ("squeeze", "unknown-offset"):
-        raise InputError(
-            "plan",
-            f"is for the model {plan.model!r}: between its lines the part has to be "
-            + ("centred" if plan.model == "centred" else "pushed to one side"),
-            remedy="verify it with IdealSqueeze, or plan for the model 'squeeze'",
-        )
     check_lift(part, array)
     offset = 0.5 * part.circumradius if start_offset is None else start_offset
     check_room(part, array, offset)
-    activations = tuple(squeeze_activation(array, line, method=method) for line in plan.lines)
+    stages = tuple(_stages(plan, part, array, offset, line, method) for line in plan.lines)
     starts = random_starts(samples, seed, offset)
     runs = Parallel(n_jobs=jobs, prefer="threads", return_as="generator")(
-        delayed(_execute)(part, activations, start, mode, 1) for start in starts
+        delayed(_execute)(part, stages, start, mode, 1) for start in starts
     )
     if progress:
         runs = track(runs, description="Simulating", total=samples)
-    records = [_summary(run, len(activations)) for run in runs]
+    records = [_summary(run, len(stages)) for run in runs]
     return ArrayVerification(
         plan=plan,
         part=part,
-        activations=activations,
+        stages=stages,
         seed=seed,
         mode=mode,
         tolerance=tolerance,
@@ -135,17 +137,48 @@ def verify_on_array(
     )
 
 
+def _stages(
+    plan: AlignmentPlan,
+    part: Part,
+    array: ActuatorArray,
+    offset: float,
+    line: float,
+    method: Method,
+) -> tuple[Activation, ...]:
+    """Return what runs for one line: where the offset counts, a linear radial field comes first.
+
+    To come from the left of the line, the part squeezes towards one that passes by on its right.
+    """
+    if plan.model in ("squeeze", "unknown-offset"):
+        return (squeeze_activation(array, line, method=method),)
+    reach = part.circumradius + offset
+    centring = activate(array, elliptic_field((1.0, 1.0), reach), method)
+    if plan.model == "centred":
+        return centring, squeeze_activation(array, line, method=method)
+    beside = _BESIDE * part.circumradius
+    check_room(part, array, beside)
+    squeeze = activate(array, squeeze_field(line, -beside), method)
+    return centring, Activation(array, squeeze.active, line)
+
+
 def _execute(
-    part: Part, activations: tuple[Activation, ...], start: Array, mode: Mode, frames: int
+    part: Part, lines: tuple[tuple[Activation, ...], ...], start: Array, mode: Mode, frames: int
 ) -> list[Trajectory]:
     """Squeeze towards each line in turn, from where the line before left the part, at rest.
 
     A part that left the array stays there: its run ends early.
     """
     run: list[Trajectory] = []
-    for activation in activations:
+    for stages in lines:
         pose = run[-1].final_pose if run else start
-        run.append(simulate(part, activation, pose, mode=mode, frames=frames))
+        motions: list[tuple[float, Trajectory]] = []
+        for activation in stages:
+            begin = sum(motion.duration for _, motion in motions)
+            motions.append((begin, simulate(part, activation, pose, mode=mode, frames=frames)))
+            pose = motions[-1][1].final_pose
+            if motions[-1][1].outcome is Outcome.LEFT_ARRAY:
+                break
+        run.append(joined(motions) if len(motions) > 1 else motions[0][1])
         if run[-1].outcome is Outcome.LEFT_ARRAY:
             break
     return run
