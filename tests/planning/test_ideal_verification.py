@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from limitsurf.actuators.actuator_array import load_array
 from limitsurf.errors import InputError, NoPlan
 from limitsurf.geometry.part import Part
 from limitsurf.motion.trajectory import Outcome
@@ -133,12 +132,6 @@ def test_bad_arguments_are_named(part, plan):
         verify_alignment(centred, part, drive, start_offset=0.1)
     with pytest.raises(InputError, match="drive"):
         verify_alignment(plan, part, "array")
-
-
-def test_arrays_that_cannot_execute_a_model_say_so(part):
-    plan = plan_alignment(part, model="push-squeeze")
-    with pytest.raises(InputError, match=r"push-squeeze.*IdealSqueeze"):
-        verify_alignment(plan, part, load_array("resonator64"))
 
 
 @pytest.mark.slow

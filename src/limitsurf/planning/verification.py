@@ -73,9 +73,10 @@ def verify_alignment(
     Orientations at the start are uniform in [0, 2 pi). On an array, centres of mass are uniform in
     a disk about its centre. In an ideal field the offset from each line is what the plan's model
     says: uniform over all offsets at which the line meets the part, drawn anew for every line;
-    zero for ``"centred"``; the whole part on the left for ``"push-squeeze"``. A run succeeds if
-    the part comes to rest on every line and ends within `tolerance` of the plan's final
-    orientation, modulo the plan's period.
+    zero for ``"centred"``; the whole part on the left for ``"push-squeeze"``. On an array, both of
+    these begin each line with a linear radial field that centres the part, and a push-squeeze
+    goes towards a line that passes by it. A run succeeds if the part comes to rest on every line
+    and ends within `tolerance` of the plan's final orientation, modulo the plan's period.
 
     Parameters
     ----------
