@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
@@ -81,6 +82,27 @@ def test_unknown_offset_tells_where_parts_may_come_to_rest(name, ratio, rng):
             images = squeeze.images[np.arange(first, last + 1) % k]
             off = np.abs(np.subtract.outer(rest[inside], images)) % np.pi
             assert (np.minimum(off, np.pi - off).min(axis=1) < 1e-6).all()
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        shapely.box(0, 0, np.sqrt(1.5), 1),  # a triple root
+        shapely.box(0, 0, 50, 1),
+        shapely.box(0, 0, 1.0001, 1),
+        shapely.Point(0, 0).buffer(1, 4).difference(shapely.box(-0.1, -0.3, 0.6, 0.2)),
+        shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(1.5, 0.2, 3, 0.7)]),
+    ],
+    ids=["triple", "sliver", "near square", "ring", "pieces"],
+)
+def test_odd_shapes(shape, rng):
+    part = Part(shape)
+    for ratio in (0.01, 1.0, 10.0):
+        squeeze = shift_squeeze_function(part, ratio)
+        phi = starts(rng, squeeze, 20)
+        _, rest = IdealSqueeze(ratio).rest(part, -1.2 * part.circumradius, phi)
+        off = np.abs(squeeze(phi) - rest) % (2 * np.pi)
+        assert np.minimum(off, 2 * np.pi - off).max() < 1e-4  # triple roots are known to 1e-5
 
 
 def test_bands_swallow_steps_that_stay_in_order():

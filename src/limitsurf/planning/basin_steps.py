@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.squeeze_flow import STABLE
+from limitsurf.kernels.squeeze_flow import MOVING
 from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.separatrices import Separatrix, separatrices
 from limitsurf.planning.squeeze_function import SqueezeFunction, smallest_period, squeeze_function
@@ -170,9 +170,9 @@ def _confirm_middles(
 
 
 def _images(part: Part, drive: IdealSqueeze, offset: float, phi: Array) -> Array:
-    """Return where motions come to rest, not reduced; NaN if not at a strict minimum."""
+    """Return where motions come to rest, not reduced; NaN if they do not."""
     _, ends, status = drive.settle(part, offset, phi, _STEP_ERROR)
-    return np.where(status == STABLE, ends, np.nan)
+    return np.where(status == MOVING, np.nan, ends)
 
 
 def _in_order(steps: Array, modulus: float, part: Part) -> SqueezeFunction:
