@@ -88,6 +88,23 @@ def naive_chain(squeeze, gap):
     return widths
 
 
+def ends_of(plan, errors, starts, rng):
+    """Return orientations at the end, over the plan's final, modulo its period.
+
+    Between two steps, either image comes by chance.
+    """
+    squeeze, phi = plan.squeeze, starts
+    n = len(squeeze.breaks)
+    for line, error in zip(plan.lines, errors, strict=True):
+        reduced = np.mod(phi - line - error - squeeze.breaks[0], squeeze.modulus)
+        reduced += squeeze.breaks[0]
+        step = np.searchsorted(squeeze.breaks, reduced, side="right") - 1
+        step += (reduced >= squeeze.ends[step]) & (rng.uniform(size=len(phi)) < 0.5)
+        phi = squeeze.images[step % n] + squeeze.modulus * (step // n) + line + error
+    off = phi - errors[-1] - plan.final
+    return off - plan.period * np.round(off / plan.period)
+
+
 def all_sequences(squeeze, lines, margin, longest):
     """Return the shortest sequences of given lines that align, with their least margins, or [].
 

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from limitsurf.actuators.force_fields import uniform_field as uniform_field
     from limitsurf.actuators.pixel_lattice import PixelLattice as PixelLattice
     from limitsurf.actuators.pixel_lattice import headings as headings
+    from limitsurf.actuators.potential_field import FieldSum as FieldSum
+    from limitsurf.actuators.radial_density import RadialField as RadialField
     from limitsurf.actuators.realised_field import RealisedField as RealisedField
     from limitsurf.actuators.realised_field import activate as activate
     from limitsurf.actuators.realised_field import realise as realise
@@ -71,10 +73,25 @@ if TYPE_CHECKING:
     from limitsurf.motion.walk import walk as walk
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
+    from limitsurf.planning.diameter_function import DiameterFunction as DiameterFunction
+    from limitsurf.planning.diameter_function import diameter_function as diameter_function
+    from limitsurf.planning.duration import expected_duration as expected_duration
+    from limitsurf.planning.duration import line_durations as line_durations
+    from limitsurf.planning.equilibria import Equilibria as Equilibria
+    from limitsurf.planning.equilibria import equilibria as equilibria
+    from limitsurf.planning.field_errors import FieldErrors as FieldErrors
+    from limitsurf.planning.line_plan import LinePlan as LinePlan
+    from limitsurf.planning.plan_lines import plan_lines as plan_lines
+    from limitsurf.planning.robustness import Robustness as Robustness
+    from limitsurf.planning.robustness import robustness as robustness
+    from limitsurf.planning.skewed_equilibria import skewed_equilibria as skewed_equilibria
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
     from limitsurf.planning.squeeze_function import squeeze_function as squeeze_function
     from limitsurf.planning.turn_function import TurnFunction as TurnFunction
     from limitsurf.planning.turn_function import turn_function as turn_function
+    from limitsurf.planning.universal_feeder import feeder_field as feeder_field
+    from limitsurf.planning.universal_feeder import feeder_range as feeder_range
+    from limitsurf.planning.universal_feeder import pivot_point as pivot_point
     from limitsurf.planning.verification import Verification as Verification
     from limitsurf.planning.verification import verify_alignment as verify_alignment
     from limitsurf.sets.contact_sum import ContactSum as ContactSum
@@ -105,11 +122,16 @@ _HOME = {
     "ConvexSet": "sets.convex_set",
     "DensityField": "actuators.density_field",
     "DensityPiece": "actuators.density_piece",
+    "DiameterFunction": "planning.diameter_function",
     "Ellipsoid": "sets.ellipsoid",
+    "Equilibria": "planning.equilibria",
+    "FieldErrors": "planning.field_errors",
+    "FieldSum": "actuators.potential_field",
     "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
     "HPolytope": "sets.h_polytope",
     "LatticeContacts": "contacts.lattice_contacts",
+    "LinePlan": "planning.line_plan",
     "LinearImage": "sets.linear_image",
     "LoadShare": "contacts.load_sharing",
     "LoadTable": "motion.load_table",
@@ -121,8 +143,10 @@ _HOME = {
     "PressurePatch": "contacts.pressure_patch",
     "Projection": "sets.projection",
     "Push": "motion.pushing",
+    "RadialField": "actuators.radial_density",
     "RealisedField": "actuators.realised_field",
     "ResonatorSweep": "actuators.resonator_sweep",
+    "Robustness": "planning.robustness",
     "Runs": "motion.simulate_many",
     "Schedule": "motion.schedule",
     "Section": "sets.sections",
@@ -143,18 +167,26 @@ _HOME = {
     "carry": "actuators.carrying",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
+    "diameter_function": "planning.diameter_function",
     "direction_errors": "actuators.field_error",
     "elliptic_contact": "contacts.coulomb",
     "elliptic_field": "actuators.force_fields",
+    "equilibria": "planning.equilibria",
+    "expected_duration": "planning.duration",
+    "feeder_field": "planning.universal_feeder",
+    "feeder_range": "planning.universal_feeder",
     "feet_motion": "motion.feet",
     "field_motion": "motion.field_motion",
     "force_scaling": "actuators.rim_force",
     "friction_load": "contacts.friction_load",
     "headings": "actuators.pixel_lattice",
     "limit_curve": "sets.sections",
+    "line_durations": "planning.duration",
     "load_array": "actuators.actuator_array",
     "load_error": "actuators.field_error",
+    "pivot_point": "planning.universal_feeder",
     "plan_alignment": "planning.alignment",
+    "plan_lines": "planning.plan_lines",
     "polygonal_contact": "contacts.coulomb",
     "project_many": "contacts.project_many",
     "push": "motion.pushing",
@@ -162,10 +194,12 @@ _HOME = {
     "push_density": "actuators.density_field",
     "radial_field": "actuators.force_fields",
     "realise": "actuators.realised_field",
+    "robustness": "planning.robustness",
     "section": "sets.sections",
     "share_load": "contacts.load_sharing",
     "simulate": "motion.simulate",
     "simulate_many": "motion.simulate_many",
+    "skewed_equilibria": "planning.skewed_equilibria",
     "skewed_squeeze_field": "actuators.force_fields",
     "squeeze_activation": "actuators.activation",
     "squeeze_field": "actuators.force_fields",

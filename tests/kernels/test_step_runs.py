@@ -28,7 +28,9 @@ def test_no_run_that_fits_is_wider(shuffled):
         runs = list(all_runs(breaks, ends, images, np.pi))
         in_order = bool(np.all(np.diff(images) >= 0.0))
         for room in [0.0, *rng.uniform(0.0, 4.0, 4), runs[-1][3]]:
-            first, count, smallest, span = widest_run(breaks, ends, images, np.pi, room, in_order)
+            args = (breaks, ends, images, np.pi, room, in_order)
+            first, count, smallest, span, more = widest_run(*args)
+            assert more == min((run[3] for run in runs if run[3] > room), default=np.inf)
             fitting = [run for run in runs if run[3] <= room]
             widest = max(width for *_, width, _ in fitting)
             least = min(span for *_, width, span in fitting if width == widest)

@@ -1,13 +1,13 @@
 import itertools
-import json
 
 import numpy as np
 import pytest
 import shapely
 
-from limitsurf.errors import InputError, ModelError, NoPlan
+from limitsurf.errors import InputError, NoPlan
 from limitsurf.geometry.part import Part
 from limitsurf.planning.alignment import AlignmentPlan, plan_alignment
+from limitsurf.planning.turn_function import turn_function
 from tests.reference_cases import CASES, NAMES, angle_distance
 
 
@@ -90,21 +90,6 @@ def test_paper_t():
     assert np.degrees(plan.least_margin) == pytest.approx(33.67, abs=0.01)
 
 
-def test_json_round_trip(tmp_path):
-    plan = plan_alignment(Part.from_file("longplan_L5"))
-    text = plan.to_json()
-    path = tmp_path / "plan.json"
-    path.write_text(text)
-    for again in (AlignmentPlan.from_json(text), AlignmentPlan.from_json(path)):
-        assert again.to_json() == text
-        assert np.array_equal(again.lines, plan.lines)
-        assert np.array_equal(again.margins, plan.margins)
-    assert json.loads(text)["unit"] == "rad"
-    for bad in ("", "{}", '{"lines": 3}'):
-        with pytest.raises(ModelError, match="no alignment plan"):
-            AlignmentPlan.from_json(bad)
-
-
 def test_min_margin():
     part = Part(CASES[NAMES.index("near_square")]["vertices"])
     best = plan_alignment(part).least_margin
@@ -120,8 +105,64 @@ def test_min_margin():
 
 def test_neutral_parts_have_no_plan(monkeypatch):
     monkeypatch.setattr("limitsurf.planning.turn_function.FLAT_MOMENT", 1e-3)
-    with pytest.raises(NoPlan, match="neutral"):
-        plan_alignment(Part(shapely.Point(0, 0).buffer(1.0)))
+    disk = Part(shapely.Point(0, 0).buffer(1.0))
+    with pytest.raises(NoPlan, match=r"cannot be aligned.*neutral.*Zindler") as caught:
+        plan_alignment(disk)
+    critical = np.degrees(turn_function(disk).critical_angle)
+    assert f"{critical:.1e} deg" in str(caught.value)
+    assert caught.value.plan is None
+
+
+@pytest.mark.parametrize("name", ["T", "blob_m3", "longplan_L5", "near_square", "pentagon"])
+def test_goal(name):
+    part = Part(CASES[NAMES.index(name)]["vertices"])
+    for goal in (0.0, 1.0, 4.0):
+        plan = plan_alignment(part, goal=goal)
+        ends = plan.predict(np.linspace(0.0, np.pi, 99)) - goal
+        assert ends - plan.period * np.round(ends / plan.period) == pytest.approx(0.0, abs=1e-9)
+        assert 0.0 <= plan.final < plan.period
+
+
+def test_given_lines_align_the_part():
+    plan = plan_alignment(Part.from_file("longplan_L5"), lines=24)
+    steps = np.degrees(plan.lines) / 7.5
+    assert steps == pytest.approx(np.round(steps))
+    assert np.abs(outcomes(plan, np.zeros(len(plan.lines)))).max() < 1e-9
+    assert isinstance(plan, AlignmentPlan)
+
+
+def test_predict_is_the_plan_carried_out():
+    """Turning the part under a fixed line is the same as turning the line about the part."""
+    plan = plan_alignment(Part.from_file("longplan_L5"))
+    for start in np.random.default_rng(0).uniform(-9.0, 9.0, 20):
+        phi = start
+        for line in plan.lines:
+            reduced = (phi - line) % np.pi
+            step = max(np.flatnonzero(plan.squeeze.breaks <= reduced), default=-1)
+            phi = plan.squeeze.images[step] + line
+        assert np.sin(plan.predict(start) - phi) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_reachable_plan_belongs_to_the_part():
+    part = Part.from_file("paper_t")
+    with pytest.raises(NoPlan) as caught:
+        plan_alignment(part, min_margin=1.0)
+    assert isinstance(caught.value.plan, AlignmentPlan)
+    assert caught.value.plan.part is part
+
+
+def test_symmetric_parts_known_to_nine_digits_have_wide_margins():
+    """Vertices with errors below 1e-10 leave steps that repeat to as much, not exactly."""
+    rng = np.random.default_rng(1)
+    radius = np.array([1.0, 0.55, 0.8, 0.45])
+    angle = np.arange(20) * np.pi / 10
+    star = np.tile(radius, 5)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    plan = plan_alignment(Part(star + 1e-11 * rng.normal(size=star.shape)))
+    exact = plan_alignment(Part(star))
+    assert plan.period == exact.period == pytest.approx(np.pi / 5)
+    assert len(plan.lines) == len(exact.lines)
+    assert plan.least_margin == pytest.approx(exact.least_margin, abs=1e-8)
+    assert np.abs(outcomes(plan, np.zeros(len(plan.lines)))).max() < 1e-8
 
 
 def test_final_orientation_is_stable_relative_to_the_last_line():

@@ -2,29 +2,12 @@
 
 import numpy as np
 import pytest
-from step_twins import naive_chain, random_steps, shortest_by_sets
+from step_twins import ends_of, naive_chain, random_steps, shortest_by_sets
 
 from limitsurf.errors import InputError, NoPlan
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.squeeze_function import SqueezeFunction
 from limitsurf.tolerances import LINE_MARGIN
-
-
-def ends_of(plan, errors, starts, rng):
-    """Return orientations at the end, over the plan's final, modulo its period.
-
-    Between two steps, either image comes by chance.
-    """
-    squeeze, phi = plan.squeeze, starts
-    n = len(squeeze.breaks)
-    for line, error in zip(plan.lines, errors, strict=True):
-        reduced = np.mod(phi - line - error - squeeze.breaks[0], squeeze.modulus)
-        reduced += squeeze.breaks[0]
-        step = np.searchsorted(squeeze.breaks, reduced, side="right") - 1
-        step += (reduced >= squeeze.ends[step]) & (rng.uniform(size=len(phi)) < 0.5)
-        phi = squeeze.images[step % n] + squeeze.modulus * (step // n) + line + error
-    off = phi - errors[-1] - plan.final
-    return off - plan.period * np.round(off / plan.period)
 
 
 def length_or_none(squeeze):
@@ -184,6 +167,9 @@ def test_nothing_to_turn_and_bad_input():
 def test_bands_may_leave_no_plan():
     breaks, images = np.array([0.0, 1.5]), np.array([0.7, 2.2])
     squeeze = SqueezeFunction(breaks, breaks + 0.1, images, np.pi)
-    with pytest.raises(NoPlan, match=r"0\.1.* deg|widest arc") as caught:
+    with pytest.raises(
+        NoPlan, match=r"has 5\.7.* of 180 deg; from the gaps .*push-squeeze"
+    ) as caught:
         plan_lines(squeeze)
     assert caught.value.reachable_margin == 0.0
+    assert caught.value.plan is None

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 
 from limitsurf import plot
 from limitsurf.contacts.coulomb import coulomb_contact
@@ -155,3 +157,36 @@ def test_there_is_something_to_draw():
         plot.draw_limit_surface()
     with pytest.raises(InputError, match="meshes need 3"):
         plot.draw_limit_surface(SPECIMENS["ellipse"])
+
+
+def test_alignment_ends_alike_with_the_median_on_the_line():
+    """Whatever the start, the last column shows one orientation; each half of the part is a half."""
+    plan = plan_alignment(Part.from_file("paper_t"))
+    starts = [0.3, 2.0]
+    figure = plot.draw_alignment(plan, starts)
+    outlines = [np.column_stack([t.x, t.y]) for t in figure.data if t.name == "paper_t"]
+    lines = [np.column_stack([t.x, t.y]) for t in figure.data if t.name == "line"]
+    assert len(outlines) == 2 * (1 + len(plan.lines))
+    assert len(lines) == 2 * len(plan.lines)
+    columns = 1 + len(plan.lines)
+    shapes = [shapely.Polygon(outline) for outline in outlines]
+    ends = [
+        shapes[columns - 1],
+        shapely.affinity.translate(shapes[-1], 0.0, lines[1][0, 1] - lines[3][0, 1]),
+    ]
+    assert ends[0].symmetric_difference(ends[1]).area < 1e-9 * ends[0].area
+    for k, line in enumerate(lines):
+        shape = shapes[k // len(plan.lines) * columns + 1 + k % len(plan.lines)]
+        middle, along = line.mean(axis=0), line[1] - line[0]
+        normal = np.array([-along[1], along[0]])
+        half = np.array(
+            [
+                middle - 2 * along,
+                middle + 2 * along,
+                middle + 2 * along + 3 * normal,
+                middle - 2 * along + 3 * normal,
+            ]
+        )
+        assert shape.intersection(shapely.Polygon(half)).area == pytest.approx(shape.area / 2)
+    with pytest.raises(InputError, match="starts"):
+        plot.draw_alignment(plan, 0.3)

@@ -12,6 +12,13 @@ from scipy.constants import g
 
 from limitsurf.actuators.actuator_array import ActuatorArray
 from limitsurf.actuators.density_piece import DensityPiece, finite
+from limitsurf.actuators.density_traits import (
+    centers_of,
+    flat_directions,
+    known_convex,
+    turning_bound,
+)
+from limitsurf.actuators.potential_field import ConvexField, FieldSum
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.density import JACOBIAN, POTENTIAL, STATE, Pieces, density_states
@@ -102,6 +109,8 @@ class DensityField:
         scalar = np.ndim(stiffness) == 0
         K = as_number("stiffness", stiffness) * np.eye(2) if scalar else stiffness
         K = as_array("stiffness", K, 2, 2)
+        if np.ptp([K[0, 1], K[1, 0]]) <= 1e-14 * np.abs(K).max():  # rounding apart
+            K = 0.5 * (K + K.T)
         level = 0.0 if K[0, 1] == K[1, 0] else None
         return cls([DensityPiece((0.0, 0.0), slope=-K, anchor=center, level=level)])
 
@@ -114,6 +123,30 @@ class DensityField:
     def has_potential(self) -> bool:
         """Whether loads are minus the gradient of a potential."""
         return all(piece.level is not None for piece in self._pieces)
+
+    @cached_property
+    def convex(self) -> bool:
+        """Whether the potential is known to be convex in the position of any part."""
+        return self.has_potential and known_convex(self._pieces)
+
+    @property
+    def flat(self) -> Array:
+        """Orthonormal directions (d, 2) in which the density does not change."""
+        return flat_directions(self._pieces)
+
+    @property
+    def centers(self) -> Array:
+        """Anchors (c, 2) of the pieces that change from place to place [m]."""
+        return centers_of(self._pieces)
+
+    def turning_bound(self, part: Part, center: ArrayLike | None, reach: float) -> float:
+        """Return a bound on the second derivative of the potential; see `ConvexField`."""
+        about = None if center is None else as_array("center", center, 2)
+        return turning_bound(self._pieces, part, about, reach)
+
+    def __add__(self, other: ConvexField) -> FieldSum:
+        """Return the sum with another field."""
+        return FieldSum(self, other)
 
     def scaled(self, factor: float) -> DensityField:
         """Return the field times a number.
@@ -145,7 +178,7 @@ class DensityField:
 
     def load(self, part: Part, pose: ArrayLike) -> Array:
         """Return loads (..., 3) on a part at poses (..., 3), about its centre of mass [N, N m]."""
-        return self._states(part, pose)[..., :POTENTIAL]
+        return self.states(part, pose)[..., :POTENTIAL]
 
     def jacobian(self, part: Part, pose: ArrayLike) -> Array:
         """Return the derivatives (..., 3, 3) of `load` with respect to the poses.
@@ -153,7 +186,7 @@ class DensityField:
         Row by row those of force and moment, columns for x, y and theta. Of one side where an edge
         of the part lies along a border.
         """
-        states = self._states(part, pose)
+        states = self.states(part, pose)
         return states[..., JACOBIAN:].reshape(*states.shape[:-1], 3, 3)
 
     def potential(self, part: Part, pose: ArrayLike) -> Array:
@@ -170,7 +203,7 @@ class DensityField:
             raise InputError(
                 "field", "has no potential", remedy="skews have none; give pieces a level"
             )
-        return self._states(part, pose)[..., POTENTIAL]
+        return self.states(part, pose)[..., POTENTIAL]
 
     @cached_property
     def kernel_data(self) -> Pieces:
@@ -186,7 +219,8 @@ class DensityField:
             np.array([piece.level or 0.0 for piece in self._pieces]),
         )
 
-    def _states(self, part: Part, pose: ArrayLike) -> Array:
+    def states(self, part: Part, pose: ArrayLike) -> Array:
+        """Return load, potential and Jacobian by rows, (..., 13), in one go."""
         poses, shape = as_points("pose", pose, 3)
         states = np.empty((len(poses), STATE))
         density_states(part.edges, poses, self.kernel_data, states)

@@ -22,7 +22,7 @@ Longs = NDArray[np.int64]
 @compiled
 def widest_run(
     breaks: Floats, ends: Floats, images: Floats, period: float, room: float, in_order: bool
-) -> tuple[int, int, float, float]:
+) -> tuple[int, int, float, float, float]:
     """Return the widest run whose images span at most `room`.
 
     Parameters
@@ -43,47 +43,54 @@ def widest_run(
         least span.
     smallest, span : float
         Of its images.
+    more : float
+        The least span of any run that does not fit; infinity if all do.
     """
     k = breaks.shape[0] // 2
-    best = (0, 0, 0.0, np.inf)
+    first, count, smallest, span = 0, 0, 0.0, np.inf
+    more = np.inf
     if room < 0.0:
-        return best
+        return first, count, smallest, span, 0.0
     queue = np.empty((2, 0 if in_order else 2 * k), dtype=np.int64)
     heads = np.zeros(2, dtype=np.int64)
     tails = np.zeros(2, dtype=np.int64)
-    best_width = -np.inf
-    last = 0  # one past the run that begins at `first`
-    for first in range(k):
+    widest = -np.inf
+    last = 0  # one past the run that begins at i
+    for i in range(k):
         if in_order:
-            while last < first + k and images[last] - images[first] <= room:
+            while last < i + k and images[last] - images[i] <= room:
                 last += 1
-            smallest = images[first]
-            span = images[last - 1] - smallest
+            low, high = images[i], images[last - 1]
+            next_span = images[last] - low if last < i + k else np.inf
         else:
-            last, smallest, span = _advance(images, queue, heads, tails, first, last, room)
-        width = period if last - first == k else ends[last - 1] - breaks[first]
-        if width > best_width or (width == best_width and span < best[3]):
-            best_width, best = width, (first, last - first, smallest, span)
-    return best
+            last, low, high, next_span = _advance(images, queue, heads, tails, i, last, room)
+        more = min(more, next_span)
+        width = period if last - i == k else ends[last - 1] - breaks[i]
+        if width > widest or (width == widest and high - low < span):
+            widest = width
+            first, count, smallest, span = i, last - i, low, high - low
+    return first, count, smallest, span, more
 
 
 @compiled
 def _advance(
-    images: Floats, queue: Longs, heads: Longs, tails: Longs, first: int, last: int, room: float
-) -> tuple[int, float, float]:
-    """Return one past the longest run from `first` on that fits, its smallest image, its span.
+    images: Floats, queue: Longs, heads: Longs, tails: Longs, i: int, last: int, room: float
+) -> tuple[int, float, float, float]:
+    """Return one past the longest run from i on that fits, its extreme images, the next span.
 
     ``queue[0]`` holds steps with falling images, the largest first, ``queue[1]`` with rising ones.
     """
     k = images.shape[0] // 2
+    next_span = np.inf
     for q in range(2):
-        heads[q] += heads[q] < tails[q] and queue[q, heads[q]] < first
-    while last < first + k:
+        heads[q] += heads[q] < tails[q] and queue[q, heads[q]] < i
+    while last < i + k:
         image = images[last]
-        if last > first:
+        if last > i:
             largest = max(image, images[queue[0, heads[0]]])
             smallest = min(image, images[queue[1, heads[1]]])
             if largest - smallest > room:
+                next_span = largest - smallest
                 break
         for q in range(2):
             sign = 1.0 - 2.0 * q
@@ -92,5 +99,4 @@ def _advance(
             queue[q, tails[q]] = last
             tails[q] += 1
         last += 1
-    smallest = images[queue[1, heads[1]]]
-    return last, smallest, images[queue[0, heads[0]]] - smallest
+    return last, images[queue[1, heads[1]]], images[queue[0, heads[0]]], next_span

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,10 +17,10 @@ from limitsurf.planning.plan_json import read_plan, write_plan
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.step_function import Model, step_function
 from limitsurf.planning.turn_function import turn_function
-from limitsurf.sets.arguments import as_positive
 
 if TYPE_CHECKING:
     from limitsurf.actuators.actuator_array import ActuatorArray
+    from limitsurf.planning.field_errors import FieldErrors
     from limitsurf.planning.robustness import Robustness
 
 __all__ = ["AlignmentPlan", "plan_alignment"]
@@ -55,17 +56,19 @@ class AlignmentPlan(LinePlan):
     model: Model = "squeeze"
     mobility_ratio: float = 1.0
 
-    def robustness(self, array: ActuatorArray) -> Robustness:
+    def robustness(
+        self, array: ActuatorArray | FieldErrors | Sequence[FieldErrors], **options: Any
+    ) -> Robustness:
         """Return what the errors of a real array leave of the plan; see `Robustness`."""
         from limitsurf.planning.robustness import robustness
 
-        return robustness(self, array)
+        return robustness(self, array, **options)
 
-    def expected_duration(self, drive: ActuatorArray) -> float:
+    def expected_duration(self, drive: ActuatorArray, **options: Any) -> float:
         """Return the expected time of the whole plan on a drive [s]."""
         from limitsurf.planning.duration import expected_duration
 
-        return expected_duration(self, drive)
+        return expected_duration(self, drive, **options)
 
     def to_json(self) -> str:
         """Return the plan as JSON text; angles in radians, the outline in metres."""
@@ -130,11 +133,12 @@ def plan_alignment(
     >>> t = Part([(0, 0), (1, 0), (1, 3), (2.5, 3), (2.5, 4), (-1.5, 4), (-1.5, 3), (0, 3)])
     >>> plan_alignment(t)
     AlignmentPlan(lines at 0.00, 45.00 deg, margin 33.67 deg)
-    >>> plan = plan_alignment(t, lines=8, goal=0.0)
-    >>> plan, plan.predict([1.0, 2.0])
+    >>> plan_alignment(t, lines=8, goal=0.0)
+    AlignmentPlan(lines at 45.00, 90.00 deg, margin 33.67 deg)
+    >>> plan_alignment(t, goal=0.5).predict([1.0, 2.0])
+    array([0.5, 0.5])
     """
-    as_positive("mobility_ratio", mobility_ratio)
-    squeeze = step_function(part, model, float(mobility_ratio))
+    squeeze = step_function(part, model, mobility_ratio)
     if squeeze.steps == 0:
         raise _neutral(part)
     try:

@@ -14,6 +14,8 @@ __all__ = ["Calipers"]
 
 Array = NDArray[np.float64]
 
+_JUST_BEFORE = 1e-14  # rad; the rounding of a direction that is reduced
+
 
 @dataclass(frozen=True, eq=False)
 class Calipers:
@@ -48,7 +50,7 @@ class Calipers:
         Where an edge lies flush, the vertex that is touched just before, at a smaller theta: the
         jaw to the right touches the vertex between the edges before and after direction theta.
         """
-        reduced = np.mod(theta, 2 * np.pi)
+        reduced = np.mod(theta - _JUST_BEFORE, 2 * np.pi)
         opposite = np.mod(reduced + np.pi, 2 * np.pi)
         left, right = (
             self.vertices[np.searchsorted(self.directions, x, side="left") % len(self.vertices)]

@@ -62,16 +62,16 @@ class _Steps:
         in_order = bool(np.all(np.diff(images) >= 0.0))
         return cls(breaks, ends, images, squeeze.period, in_order)
 
-    def widest_arc(self, room: float) -> _Arc | None:
-        """Return the widest arc whose images span at most `room`."""
-        i, n, image, span = widest_run(
+    def widest_arc(self, room: float) -> tuple[_Arc | None, float]:
+        """Return the widest arc whose images span at most `room`, and the next larger span."""
+        i, n, image, span, more = widest_run(
             self.breaks, self.ends, self.images, self.period, room, self.in_order
         )
         if n == 0:
-            return None
+            return None, more
         whole = 2 * n == len(self.breaks)
         width = self.period if whole else float(self.ends[i + n - 1] - self.breaks[i])
-        return _Arc(float(self.breaks[i]), width, image, span)
+        return _Arc(float(self.breaks[i]), width, image, span), more
 
 
 Chain = list[_Arc]
@@ -86,37 +86,40 @@ def plan_free_lines(squeeze: SqueezeFunction, min_margin: float, goal: float | N
         No plan has the margin.
     """
     steps = _Steps.of(squeeze)
-    chain = _shortest_chain(steps, 2.0 * max(min_margin, LINE_MARGIN))
+    chain, _ = _shortest_chain(steps, 2.0 * max(min_margin, LINE_MARGIN))
     if chain is None:
         raise _no_plan(steps, squeeze, min_margin, goal)
     return _forward(_widen(chain, steps, len(chain)), squeeze, goal)
 
 
-def _widen(chain: Chain, steps: _Steps, most: float) -> Chain:
+def _widen(chain: Chain, steps: _Steps, most: float = np.inf) -> Chain:
     """Return the chain of at most `most` arcs with the largest gap."""
-
-    def search(gap: float) -> tuple[Chain | None, float]:
-        return _shortest_chain(steps, gap, most), float(np.nextafter(gap, -np.inf))
-
-    return with_largest_gap(chain, _gap, search, steps.period)
+    return with_largest_gap(
+        chain, _gap, lambda gap: _shortest_chain(steps, gap, most), steps.period
+    )
 
 
-def _shortest_chain(steps: _Steps, gap: float, most: float = np.inf) -> Chain | None:
-    """Return the fewest arcs, the last one first, each `gap` wider than the images it receives."""
-    chain = _backwards(steps, gap, most)
-    return chain if chain[-1].width == steps.period else None
+def _shortest_chain(steps: _Steps, gap: float, most: float = np.inf) -> tuple[Chain | None, float]:
+    """Return the fewest arcs, the last one first, each `gap` wider than the images it receives.
+
+    And the largest smaller gap for which another run would fit anywhere.
+    """
+    chain, next_gap = _backwards(steps, gap, most)
+    return chain if chain[-1].width == steps.period else None, next_gap
 
 
-def _backwards(steps: _Steps, gap: float, most: float) -> Chain:
+def _backwards(steps: _Steps, gap: float, most: float = np.inf) -> tuple[Chain, float]:
     """Return arcs from the last backwards, as far as they grow and at most `most` of them."""
-    arc = steps.widest_arc(0.0)
+    next_gap = 0.0
+    arc, _ = steps.widest_arc(0.0)
     chain: Chain = []
     while arc is not None and (not chain or arc.width > chain[-1].width):
         chain.append(arc)
         if arc.width == steps.period or len(chain) >= most:
             break
-        arc = steps.widest_arc(_room(arc.width, gap))
-    return chain
+        arc, more = steps.widest_arc(_room(arc.width, gap))
+        next_gap = max(next_gap, chain[-1].width - more)
+    return chain, next_gap
 
 
 def _room(width: float, gap: float) -> float:
@@ -156,15 +159,20 @@ def _no_plan(
     steps: _Steps, squeeze: SqueezeFunction, min_margin: float, goal: float | None
 ) -> NoPlan:
     """Return the error that says which margin is reachable, with the plan that attains it."""
-    chain = _shortest_chain(steps, 2.0 * LINE_MARGIN)
+    chain, _ = _shortest_chain(steps, 2.0 * LINE_MARGIN)
     if chain is None:
-        widest = _backwards(steps, 2.0 * LINE_MARGIN, np.inf)[-1].width
-        return NoPlan(
-            "part: no lines align it: the widest arc of orientations that squeezing surely takes "
-            f"to one has {np.degrees(widest):.6g} of {np.degrees(steps.period):.6g} deg",
-            0.0,
+        widest = _backwards(steps, 2.0 * LINE_MARGIN)[0][-1].width
+        reason = (
+            "no plan: the widest arc of orientations that lines surely take to one has "
+            f"{np.degrees(widest):.6g} of {np.degrees(steps.period):.6g} deg"
         )
-    plan = _forward(_widen(chain, steps, np.inf), squeeze, goal)
+        if np.any(steps.breaks[1:] > steps.ends[:-1]):
+            reason += (
+                "; from the gaps between steps either of two images may come: centre the part "
+                "first (model 'centred'), or push it from one side ('push-squeeze')"
+            )
+        return NoPlan(reason, 0.0)
+    plan = _forward(_widen(chain, steps), squeeze, goal)
     return NoPlan(
         f"min_margin: no plan has a margin of {np.degrees(min_margin):.4g} deg; at most "
         f"{np.degrees(plan.least_margin):.4g} deg is reachable, by {len(plan.lines)} lines "

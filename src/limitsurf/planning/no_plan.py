@@ -25,10 +25,13 @@ def no_plan_on(given: GivenLines, min_margin: float, goal: float | None) -> NoPl
         return NoPlan(f"lines: {_why(given)}; {_remedy(given)}", 0.0)
     best = _safest_plan(given, given.targets(goal, GOAL))
     if best is not None:
+        wish = f"{np.degrees(min_margin):.4g} deg" + (
+            "" if goal is None else " and ends at the goal"
+        )
         return NoPlan(
-            f"min_margin: no plan on these lines has a margin of {np.degrees(min_margin):.4g} deg; "
-            f"at most {np.degrees(best.least_margin):.4g} deg is reachable, by {len(best.lines)} "
-            "lines (the error's `plan`)",
+            f"min_margin: no plan on these lines has a margin of {wish}; at most "
+            f"{np.degrees(best.least_margin):.4g} deg is reachable, by {len(best.lines)} lines "
+            "(the error's `plan`)",
             best.least_margin,
             best,
         )

@@ -92,6 +92,9 @@ def read_plan(text: str | Path) -> PlanFields:
     model = fields.get("model")
     if model not in get_args(Model):
         raise fields.bad("model", f"is none of {', '.join(get_args(Model))}", model)
+    ratio = fields.number("mobility_ratio")
+    if ratio < 0.0:
+        raise fields.bad("mobility_ratio", "must be at least 0", ratio)
     return PlanFields(
         lines,
         margins,
@@ -100,7 +103,7 @@ def read_plan(text: str | Path) -> PlanFields:
         SqueezeFunction(*steps, period, modulus),
         _part(part),
         model,
-        fields.positive("mobility_ratio"),
+        ratio,
     )
 
 

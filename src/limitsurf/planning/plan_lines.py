@@ -11,6 +11,7 @@ from limitsurf.planning.given_lines import GivenLines, fewest_lines, plan_throug
 from limitsurf.planning.line_plan import LinePlan
 from limitsurf.planning.no_plan import no_plan_on
 from limitsurf.planning.squeeze_function import SqueezeFunction
+from limitsurf.planning.stuck_pairs import stuck_pairs
 from limitsurf.sets.arguments import as_array, as_count, as_number
 from limitsurf.tolerances import ANGLE, GOAL, LINE_MARGIN
 
@@ -57,9 +58,9 @@ def plan_lines(
     >>> rectangle = Part([(0, 0), (2, 0), (2, 1), (0, 1)])
     >>> squeeze = squeeze_function(diameter_function(rectangle))
     >>> plan_lines(squeeze)
-    LinePlan(lines at 0.00, 71.57 deg, margin 18.43 deg)
+    LinePlan(lines at 0.00, 135.00 deg, margin 18.43 deg)
     >>> plan_lines(squeeze, lines=4, goal=0.0)
-    LinePlan(lines at 45.00, 90.00 deg, margin 18.43 deg)
+    LinePlan(lines at 45.00, 0.00 deg, margin 18.43 deg)
     """
     margin = as_number("min_margin", min_margin)
     if not (np.isfinite(margin) and margin >= 0.0):
@@ -98,8 +99,9 @@ def _given_lines(squeeze: SqueezeFunction, lines: ArrayLike | int) -> GivenLines
 
 
 def _plan_given_lines(given: GivenLines, min_margin: float, goal: float | None) -> LinePlan:
-    targets = given.targets(goal, GOAL)
-    nodes = fewest_lines(given, max(min_margin, LINE_MARGIN), targets)
+    margin, targets = max(min_margin, LINE_MARGIN), given.targets(goal, GOAL)
+    merging = not stuck_pairs(given, margin).any()  # else a search could take long to find nothing
+    nodes = fewest_lines(given, margin, targets) if merging else None
     if nodes is None:
         raise no_plan_on(given, min_margin, goal)
     return plan_through(given, safest_lines(given, nodes, targets, len(nodes)))

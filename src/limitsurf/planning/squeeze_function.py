@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,6 +14,8 @@ from limitsurf.tolerances import ANGLE
 __all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
 
 Array = NDArray[np.float64]
+
+_TRIPLE = 1e-4  # rad; triple roots of U', where two equilibria merge, are known to about 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +55,16 @@ class SqueezeFunction:
 
         Between two steps, where either image may come, that of the step before.
         """
-        reduced = np.mod(np.asarray(phi, dtype=np.float64), self.modulus)
+        return np.mod(self.follow(phi), self.modulus)
+
+    def follow(self, phi: ArrayLike) -> Array:
+        """Return the orientation after a squeeze, not reduced: phi and how far the part turns."""
+        start = np.asarray(phi, dtype=np.float64)
         if len(self.breaks) == 0:
-            return reduced
-        step = np.searchsorted(self.breaks, reduced, side="right") - 1  # -1: the last step
-        return np.mod(self.images[step], self.modulus)
+            return start
+        turns = self.modulus * np.floor((start - self.breaks[0]) / self.modulus)
+        step = np.searchsorted(self.breaks, start - turns, side="right") - 1
+        return np.asarray(self.images[np.maximum(step, 0)] + turns)
 
     def __repr__(self) -> str:
         """Return the steps in degrees."""
@@ -82,6 +90,10 @@ class EquilibriaOfSqueeze(Protocol):
     def neutral(self) -> bool:
         """Whether there are neither."""
 
+    @property
+    def symmetry_order(self) -> int:
+        """Order of the part's rotational symmetry."""
+
 
 def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     """Return the squeeze function that belongs to a turn function.
@@ -103,16 +115,22 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     before_first = turn.stable < turn.unstable[0]
     images = np.sort(np.where(before_first, turn.stable + np.pi, turn.stable))
     ends = np.append(turn.unstable[1:], turn.unstable[:1] + np.pi)
-    return SqueezeFunction(
-        turn.unstable, ends, images, smallest_period(turn.unstable, ends, images, np.pi)
-    )
+    steps = turn.unstable, ends, images
+    period, rough = (smallest_period(*steps, np.pi, tolerance) for tolerance in (ANGLE, _TRIPLE))
+    if rough < period:  # if the part is symmetric, the steps are, however well they are known
+        order = turn.symmetry_order
+        copies = math.gcd(round(np.pi / rough), order if order % 2 else order // 2)
+        period = min(period, np.pi / copies)
+    return SqueezeFunction(*steps, period)
 
 
-def smallest_period(breaks: Array, ends: Array, images: Array, modulus: float) -> float:
+def smallest_period(
+    breaks: Array, ends: Array, images: Array, modulus: float, tolerance: float = ANGLE
+) -> float:
     """Return the smallest ``modulus / d`` under which the steps map onto one another.
 
     Each divisor d of their number costs one pass over the steps. Two steps whose places differ by
-    less than `tolerances.ANGLE` are taken for images of one another.
+    at most `tolerance` are taken for images of one another.
     """
     k = len(breaks)
     for copies in range(k, 1, -1):
@@ -120,7 +138,7 @@ def smallest_period(breaks: Array, ends: Array, images: Array, modulus: float) -
             continue
         shift, turn = k // copies, modulus / copies
         same = all(
-            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= ANGLE
+            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= tolerance
             for x in (breaks, ends, images)
         )
         if same:

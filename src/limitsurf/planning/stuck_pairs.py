@@ -93,7 +93,8 @@ def _candidates(given: GivenLines) -> Array:
     widths = np.diff(critical, append=critical[0] + modulus)
     middles = (critical + 0.5 * widths)[np.argsort(-widths, kind="stable")]
     hundredths = np.round(np.degrees(np.mod(np.concatenate([halfway, middles]), modulus)), 2)
-    return np.radians(hundredths)  # what a message can say in full
+    rounded: Array = np.radians(hundredths)  # what a message can say in full
+    return rounded
 
 
 def _apart(x: Array | float, y: Array | float, period: float) -> Array:

@@ -1,0 +1,41 @@
+"""Draw a diameter function."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from limitsurf.planning.diameter_function import DiameterFunction
+from limitsurf.plot.style import COLORS, lay_out
+
+__all__ = ["draw_diameter_function"]
+
+
+def draw_diameter_function(diameter: DiameterFunction) -> Any:
+    """Return a plotly figure of the distance of the jaws, with its minima and maxima."""
+    import plotly.graph_objects as go
+
+    phi = np.unique(np.concatenate([np.linspace(0.0, np.pi, 721), diameter.breakpoints]))
+    figure = go.Figure()
+    figure.add_scatter(
+        x=np.degrees(phi),
+        y=1e3 * diameter.potential(phi),
+        mode="lines",
+        name="diameter function",
+        line={"color": COLORS[0]},
+    )
+    for name, angles, color, symbol in (
+        ("stable", diameter.stable, COLORS[2], "circle"),
+        ("unstable", diameter.unstable, COLORS[1], "circle-open"),
+    ):
+        figure.add_scatter(
+            x=np.degrees(angles),
+            y=1e3 * diameter.potential(angles),
+            mode="markers",
+            name=name,
+            marker={"color": color, "symbol": symbol, "size": 11},
+        )
+    figure.update_xaxes(range=[0, 180], dtick=30)
+    figure.update_yaxes(rangemode="tozero")
+    return lay_out(figure, x="orientation phi [deg]", y="distance of the jaws [mm]")
