@@ -81,12 +81,14 @@ if TYPE_CHECKING:
     from limitsurf.planning.equilibria import equilibria as equilibria
     from limitsurf.planning.field_errors import FieldErrors as FieldErrors
     from limitsurf.planning.line_plan import LinePlan as LinePlan
+    from limitsurf.planning.median_pieces import MedianPiece as MedianPiece
     from limitsurf.planning.plan_lines import plan_lines as plan_lines
     from limitsurf.planning.robustness import Robustness as Robustness
     from limitsurf.planning.robustness import robustness as robustness
     from limitsurf.planning.skewed_equilibria import skewed_equilibria as skewed_equilibria
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
     from limitsurf.planning.squeeze_function import squeeze_function as squeeze_function
+    from limitsurf.planning.turn_certificate import TurnCertificate as TurnCertificate
     from limitsurf.planning.turn_function import TurnFunction as TurnFunction
     from limitsurf.planning.turn_function import turn_function as turn_function
     from limitsurf.planning.universal_feeder import feeder_field as feeder_field
@@ -135,6 +137,7 @@ _HOME = {
     "LinearImage": "sets.linear_image",
     "LoadShare": "contacts.load_sharing",
     "LoadTable": "motion.load_table",
+    "MedianPiece": "planning.median_pieces",
     "MinkowskiSum": "sets.minkowski_sum",
     "OscillatingContact": "contacts.oscillating_contact",
     "Part": "geometry.part",
@@ -156,6 +159,7 @@ _HOME = {
     "TipDissipation": "contacts.tip_dissipation",
     "TorsionalResonator": "actuators.torsional_resonator",
     "Trajectory": "motion.trajectory",
+    "TurnCertificate": "planning.turn_certificate",
     "TurnFunction": "planning.turn_function",
     "UniformFriction": "contacts.uniform_friction",
     "VPolytope": "sets.v_polytope",

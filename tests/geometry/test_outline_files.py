@@ -110,6 +110,35 @@ def test_wkt_and_geojson(tmp_path):
             Part.from_file(path, unit="parsnip")
 
 
+TWO_PIECES = "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((2 0, 3 0, 3 1, 2 0)))"
+
+
+def test_several_pieces_only_if_said(tmp_path):
+    path = write(tmp_path, "two.wkt", TWO_PIECES)
+    with pytest.raises(ModelError, match=r"outline: falls into 2 pieces; .*pieces=True") as caught:
+        Part.from_file(path, unit="mm")
+    assert str(path) in str(caught.value)
+    assert Part.from_file(path, unit="mm", pieces=True).area == pytest.approx(1e-6)
+    squares = write(tmp_path, "two.svg", svg('<path d="M0 0h1v1h-1zM3 0h1v1h-1z"/>'))
+    with pytest.raises(ModelError, match="2 pieces"):
+        Part.from_file(squares)
+    one = write(tmp_path, "one.wkt", "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)))")
+    assert Part.from_file(one, unit="mm").area == pytest.approx(0.5e-6)
+
+
+def test_a_model_may_say_that_its_drawing_has_pieces(tmp_path):
+    write(tmp_path, "two.wkt", TWO_PIECES)
+    vertices = "vertices = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 4], [0, 4]]"
+    assert vertices in PART_MODEL
+    model = PART_MODEL.replace(vertices, 'file = "two.wkt"')
+    path = write(tmp_path, "two.toml", model)
+    with pytest.raises(ModelError, match="2 pieces"):
+        Part.from_file(path)
+    said = model.replace('file = "two.wkt"', 'file = "two.wkt"\npieces = true')
+    path = write(tmp_path, "two.toml", said)
+    assert shapely.get_num_geometries(Part.from_file(path).polygon) == 2
+
+
 @pytest.mark.parametrize(
     ("name", "text", "problem"),
     [

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.median import area_left, left_areas, median_offset, squeeze_states
+from limitsurf.kernels.median import area_left, median_offset, squeeze_states
 from tests.reference_cases import CASES, NAMES
 
 SHAPES = {
@@ -103,15 +103,6 @@ def test_area_left_decreases_from_the_area_to_zero():
     assert areas[0] == pytest.approx(part.area)
     assert areas[-1] == 0.0
     assert np.all(np.diff(areas) <= 1e-12)
-
-
-def test_left_areas_of_lines_through_a_point():
-    part = Part(SHAPES["triangle"])
-    theta = np.array([0.1, 1.0, 2.0])
-    for angle, area in zip(theta, left_areas(part.edges, theta, 0.3, -0.2), strict=True):
-        z = -0.3 * np.sin(angle) - 0.2 * np.cos(angle)
-        left, _ = cut(part, angle, z)
-        assert area == pytest.approx(left.area, rel=1e-12)
 
 
 def test_median_of_a_tall_sliver():

@@ -103,8 +103,7 @@ def test_min_margin():
         plan_alignment(part, min_margin=-1.0)
 
 
-def test_neutral_parts_have_no_plan(monkeypatch):
-    monkeypatch.setattr("limitsurf.planning.turn_function.FLAT_MOMENT", 1e-3)
+def test_neutral_parts_have_no_plan():
     disk = Part(shapely.Point(0, 0).buffer(1.0))
     with pytest.raises(NoPlan, match=r"cannot be aligned.*neutral.*Zindler") as caught:
         plan_alignment(disk)

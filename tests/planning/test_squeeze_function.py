@@ -11,7 +11,7 @@ from limitsurf.planning.squeeze_function import (
     smallest_period,
     squeeze_function,
 )
-from limitsurf.planning.turn_function import TurnFunction, turn_function
+from limitsurf.planning.turn_function import turn_function
 from tests.reference_cases import CASES, NAMES, angle_distance
 
 
@@ -65,8 +65,7 @@ def test_images_are_fixed_and_arrays_broadcast():
 
 def test_neutral_parts_stay():
     disk = Part(shapely.Point(0, 0).buffer(1.0))
-    empty = np.empty(0)
-    squeeze = squeeze_function(TurnFunction(disk, empty, empty, empty, neutral=True))
+    squeeze = squeeze_function(turn_function(disk))
     assert squeeze([0.3, 4.0]) == pytest.approx([0.3, 4.0 - np.pi])
     assert "identity" in repr(squeeze)
 

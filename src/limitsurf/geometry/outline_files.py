@@ -37,6 +37,7 @@ class OutlineModel(Model):
     assumed: str | None = None
     vertices: list[tuple[float, float]] | None = None
     file: str | None = None
+    pieces: bool = False
 
     @model_validator(mode="after")
     def _one_of(self) -> OutlineModel:
@@ -55,8 +56,12 @@ class PartModel(Model):
     areal_density: Annotated[Sourced, number("kg/m^2", above=0.0)] | None = None
 
 
-def read_part_file(name_or_path: str | Path, unit: str | None = None) -> OutlineFile:
+def read_part_file(
+    name_or_path: str | Path, unit: str | None = None, *, pieces: bool = False
+) -> OutlineFile:
     """Read a drawing by its suffix, or a part model by path or name.
+
+    A drawing that falls into several pieces is refused unless `pieces`, or the model, allows it.
 
     Raises
     ------
@@ -69,8 +74,8 @@ def read_part_file(name_or_path: str | Path, unit: str | None = None) -> Outline
         if path.suffix.lower() == ".toml":
             if unit is not None:
                 raise InputError("unit", "a part model has its own", remedy="leave --unit out")
-            return _read_model(path)
-        return OutlineFile(_read_drawing(path, scale), None, path.stem)
+            return _read_model(path, pieces)
+        return OutlineFile(_read_drawing(path, scale, pieces), None, path.stem)
     except ModelError:
         raise
     except InputError as error:
@@ -79,18 +84,31 @@ def read_part_file(name_or_path: str | Path, unit: str | None = None) -> Outline
         ) from error
 
 
-def _read_model(path: Path) -> OutlineFile:
+def _read_model(path: Path, pieces: bool) -> OutlineFile:
     model = load_model(path, PartModel)
     scale = model.outline.unit.value
     if model.outline.file is not None:
-        polygon = _read_drawing(path.parent / model.outline.file, scale)
+        pieces = pieces or model.outline.pieces
+        polygon = _read_drawing(path.parent / model.outline.file, scale, pieces)
     else:
         polygon = _scaled(as_polygon(model.outline.vertices or [], name="outline.vertices"), scale)
     density = None if model.areal_density is None else model.areal_density.value
     return OutlineFile(polygon, density, path.stem)
 
 
-def _read_drawing(path: Path, scale: float | None) -> shapely.Geometry:
+def _read_drawing(path: Path, scale: float | None, pieces: bool) -> shapely.Geometry:
+    shape = _read_shape(path, scale)
+    number = shapely.get_num_geometries(shape)
+    if number > 1 and not pieces:
+        raise InputError(
+            "outline",
+            f"falls into {number} pieces",
+            remedy="join them, or say pieces=True if they are rigidly connected",
+        )
+    return shape
+
+
+def _read_shape(path: Path, scale: float | None) -> shapely.Geometry:
     text = _read_text(path)
     suffix = path.suffix.lower()
     if suffix == ".svg":

@@ -9,7 +9,9 @@ from shapely.validation import explain_validity
 
 from limitsurf.errors import InputError
 
-__all__ = ["as_polygon", "directed_edges"]
+__all__ = ["as_polygon", "directed_edges", "ring_starts"]
+
+_SMALLEST, _LARGEST = 1e-70, 1e70  # fourth powers are normal numbers
 
 
 def as_polygon(outline: ArrayLike | shapely.Geometry, *, name: str = "outline") -> shapely.Geometry:
@@ -34,6 +36,13 @@ def as_polygon(outline: ArrayLike | shapely.Geometry, *, name: str = "outline") 
         raise InputError(name, "is empty", remedy="give at least three vertices")
     if not np.isfinite(shapely.get_coordinates(shape)).all():
         raise InputError(name, "has coordinates that are not finite", remedy="remove NaN and inf")
+    size = float(np.ptp(shapely.get_coordinates(shape), axis=0).max())
+    if size != 0.0 and not _SMALLEST < size < _LARGEST:
+        raise InputError(
+            name,
+            f"is {size:.2g} wide, beyond what moments can be computed of",
+            remedy="scale the coordinates",
+        )
     if shapely.area(shape) == 0.0:
         raise InputError(name, "has no area", remedy="give at least three vertices off a line")
     if not shapely.is_valid(shape):
@@ -56,8 +65,16 @@ def directed_edges(shape: shapely.Geometry, origin: tuple[float, float]) -> NDAr
     return stacked
 
 
+def ring_starts(edges: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return where rings begin among the edges (E, 4) that `directed_edges` returns."""
+    first = np.append(True, np.any(edges[1:, :2] != edges[:-1, 2:], axis=1))
+    return np.flatnonzero(first)
+
+
 def _ring(vertices: ArrayLike, name: str) -> shapely.Polygon:
     try:
+        if np.iscomplexobj(vertices):
+            raise TypeError("complex numbers")
         points = np.asarray(vertices, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError(name, "is no array of numbers", remedy="give (n, 2) vertices") from error

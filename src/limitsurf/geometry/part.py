@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from limitsurf.errors import InputError
 from limitsurf.geometry.outline_files import read_part_file
 from limitsurf.geometry.outlines import as_polygon, directed_edges
+from limitsurf.geometry.rotation_symmetry import rotation_order
 from limitsurf.sets.arguments import as_array
 from limitsurf.units import parse_quantity
 
@@ -63,7 +63,12 @@ class Part:
 
     @classmethod
     def from_file(
-        cls, path: str | Path, unit: str | None = None, areal_density: float | str | None = None
+        cls,
+        path: str | Path,
+        unit: str | None = None,
+        areal_density: float | str | None = None,
+        *,
+        pieces: bool = False,
     ) -> Part:
         """Read a part from a drawing or a model file.
 
@@ -77,13 +82,16 @@ class Part:
             for an SVG without physical size.
         areal_density : float or str, optional
             Mass per area; overrides that of a model file.
+        pieces : bool
+            Allow a drawing of several pieces, which count as rigidly connected.
 
         Raises
         ------
         ModelError
-            The file cannot be read or does not hold an outline; says which field.
+            The file cannot be read, does not hold an outline, or holds several pieces; says which
+            field.
         """
-        outline = read_part_file(path, unit)
+        outline = read_part_file(path, unit, pieces=pieces)
         density = outline.areal_density if areal_density is None else areal_density
         return cls(outline.polygon, density, name=outline.name)
 
@@ -158,15 +166,7 @@ class Part:
     @cached_property
     def symmetry_order(self) -> int:
         """Largest r such that a turn by 2 pi / r about the centroid changes nothing."""
-        x0, y0, x1, y1 = self.unit_edges.T
-        points = np.concatenate([x0 + 1j * y0, 0.5 * (x0 + x1) + 0.5j * (y0 + y1)])
-        tree = cKDTree(np.column_stack([points.real, points.imag]))
-        for order in range(len(x0), 1, -1):
-            turned = points * np.exp(2j * np.pi / order)
-            distance, _ = tree.query(np.column_stack([turned.real, turned.imag]))
-            if distance.max() <= 1e-9:
-                return order
-        return 1
+        return rotation_order(self.unit_edges)
 
     def at(self, pose: ArrayLike) -> shapely.Geometry:
         """Return the outline with the centre of mass at a pose ``(x, y, theta)`` [m, m, rad]."""

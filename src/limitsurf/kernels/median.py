@@ -21,7 +21,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
 
-__all__ = ["area_left", "left_areas", "median_offset", "squeeze_states"]
+__all__ = ["area_left", "median_offset", "squeeze_states"]
 
 
 @compiled
@@ -59,7 +59,8 @@ def median_offset(edges: Floats, theta: float, half_area: float) -> float:
         low = min(low, t)
         high = max(high, t)
     z = 0.5 * (low + high)
-    for _ in range(100):
+    last = np.inf
+    for _ in range(200):
         area, chord = area_left(edges, theta, z)
         excess = area - half_area
         if excess > 0.0:
@@ -68,12 +69,14 @@ def median_offset(edges: Floats, theta: float, half_area: float) -> float:
             high = z
         else:
             return z
-        step = z + excess / chord if chord > 0.0 else 0.5 * (low + high)
-        if not low < step < high:
+        step = z + excess / chord if chord > 0.0 else np.inf
+        # where chords appear or vanish Newton's steps may shrink the bracket too slowly
+        if not low < step < high or abs(step - z) > 0.5 * last:
             step = 0.5 * (low + high)
-        if abs(step - z) <= 1e-16 * (high - low) or step in (low, high):
+        last = abs(step - z)
+        if last <= 1e-16 * (high - low) or step in (low, high):
             return step
-        if abs(step - z) <= 2e-16 * max(abs(z), half_area):
+        if last <= 2e-16 * max(abs(z), half_area):
             return step
         z = step
     return z
@@ -121,14 +124,4 @@ def squeeze_states(edges: Floats, theta: Floats, half_area: float) -> Floats:
     out = np.empty((theta.shape[0], 6))
     for k in range(theta.shape[0]):
         _squeeze_state(edges, theta[k], half_area, out[k])
-    return out
-
-
-@compiled
-def left_areas(edges: Floats, theta: Floats, px: float, py: float) -> Floats:
-    """Return the areas left of the lines through the point ``(px, py)`` in directions `theta`."""
-    out = np.empty(theta.shape[0])
-    for k in range(theta.shape[0]):
-        z = np.cos(theta[k]) * py - np.sin(theta[k]) * px
-        out[k] = area_left(edges, theta[k], z)[0]
     return out

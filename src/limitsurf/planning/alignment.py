@@ -130,12 +130,12 @@ def plan_alignment(
 
     Examples
     --------
-    >>> t = Part([(0, 0), (1, 0), (1, 3), (2.5, 3), (2.5, 4), (-1.5, 4), (-1.5, 3), (0, 3)])
-    >>> plan_alignment(t)
-    AlignmentPlan(lines at 0.00, 45.00 deg, margin 33.67 deg)
-    >>> plan_alignment(t, lines=8, goal=0.0)
-    AlignmentPlan(lines at 45.00, 90.00 deg, margin 33.67 deg)
-    >>> plan_alignment(t, goal=0.5).predict([1.0, 2.0])
+    >>> part = Part([(0, 0), (2, 0), (2.1, 2), (0, 2.2)])
+    >>> plan_alignment(part)
+    AlignmentPlan(lines at 0.00, 44.27 deg, margin 6.05 deg)
+    >>> plan_alignment(part, lines=8)
+    AlignmentPlan(lines at 135.00, 0.00 deg, margin 5.31 deg)
+    >>> plan_alignment(part, goal=0.5).predict([1.0, 2.0])
     array([0.5, 0.5])
     """
     squeeze = step_function(part, model, mobility_ratio)

@@ -7,30 +7,33 @@ it descends the potential U. Both are taken modulo pi, since the line has no dir
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
 
+from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.median import squeeze_states
-from limitsurf.planning.analytic_roots import analytic_roots
-from limitsurf.planning.median_events import median_events
-from limitsurf.tolerances import ANGLE, FLAT_MOMENT
+from limitsurf.kernels.median_cell import START
+from limitsurf.kernels.median_events import median_events
+from limitsurf.kernels.median_states import median_states
+from limitsurf.kernels.steepest_turn import steepest_turn
+from limitsurf.kernels.turn_roots import slope_signs
+from limitsurf.planning.median_pieces import MedianPiece, crossed_in_the_middle, median_pieces
+from limitsurf.planning.turn_certificate import TurnCertificate, sign_changes
+from limitsurf.tolerances import FLAT_MOMENT, NEUTRAL
 
 __all__ = ["TurnFunction", "turn_function"]
 
 Array = NDArray[np.float64]
 
-_HALF = 0.5  # of the area 1 to which parts are scaled
+_WRAP = 2e-15  # rad; this far below pi is 0
+_GAP = 1e-6  # chord, at area 1, of a median that may lie anywhere between two halves
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TurnFunction:
     r"""Which way a part turns between two half-planes that push it towards a line.
 
@@ -42,48 +45,62 @@ class TurnFunction:
         The part.
     stable, unstable : (k,) float
         Orientations of stable and unstable equilibrium, ascending [rad]; as many of one as of the
-        other, none of either if the part is neutral.
-    breakpoints : (b,) float
-        Orientations at which the median passes through a vertex, ascending [rad].
-    neutral : bool
-        True if the part is in equilibrium at every orientation, like a disk.
+        other, none of either if the moment is rounding at every orientation.
+    cells : (m, 6) float
+        The directions, covered by cells that bound the moment: what `certificate` is drawn from
+        (rows of `limitsurf.kernels.turn_roots.slope_signs`).
+    neutral_angle : float
+        A part with a smaller critical angle counts as neutral [rad].
     """
 
     part: Part
     stable: Array
     unstable: Array
-    breakpoints: Array
-    neutral: bool
+    cells: Array
+    neutral_angle: float = NEUTRAL
 
     def __call__(self, phi: ArrayLike) -> NDArray[np.int64]:
         """Return 1 where the part turns counter-clockwise, -1 clockwise, 0 in equilibrium."""
-        slope = _column(self.part, phi, 2)
-        return np.where(np.abs(slope) <= FLAT_MOMENT, 0, np.sign(slope)).astype(np.int64)
+        slope = self._states(phi)[..., 2]
+        return np.where(np.abs(slope) <= _rounding(self.part), 0, np.sign(slope)).astype(np.int64)
 
     def potential(self, phi: ArrayLike) -> Array:
         """Return ``U = integral |distance to the median| dA`` [m^3], for unit force per area."""
-        return _column(self.part, phi, 1) * self._unit
+        return self._states(phi)[..., 1] * self._unit
 
     def moment(self, phi: ArrayLike) -> Array:
         """Return ``dU/dtheta`` at theta = -phi [m^3]: the moment that turns the part."""
-        return _column(self.part, phi, 2) * self._unit
+        return self._states(phi)[..., 2] * self._unit
 
     def curvature(self, phi: ArrayLike) -> Array:
         """Return ``U'' = 2 J - U`` [m^3]; positive at a stable orientation."""
-        return (2 * _column(self.part, phi, 3) - _column(self.part, phi, 1)) * self._unit
+        states = self._states(phi)
+        return (2 * states[..., 3] - states[..., 1]) * self._unit
 
     def median(self, phi: float) -> tuple[float, shapely.Geometry]:
         """Return the median's offset from the centroid [m] and its chords in the part's frame [m].
 
         The offset counts along ``n = (-sin theta, cos theta)``, theta = -phi.
         """
-        offset = float(_column(self.part, phi, 0)) * self.part.area**0.5
+        reversals = np.floor((-float(phi) - START) / np.pi)
+        offset = float(self._states(phi)[..., 0]) * self.part.area**0.5 * (-1.0) ** reversals
         theta = -float(phi)
         along = np.array([np.cos(theta), np.sin(theta)])
         middle = np.asarray(self.part.centroid) + offset * np.array([-along[1], along[0]])
         reach = 2.0 * self.part.circumradius
         line = shapely.LineString([middle - reach * along, middle + reach * along])
         return offset, shapely.intersection(line, self.part.polygon)
+
+    def _states(self, phi: ArrayLike) -> Array:
+        """Return ``(z, U, U', J, chord length, s_m)`` at area 1 along a new last axis."""
+        angles = np.asarray(phi, dtype=np.float64)
+        if not np.isfinite(angles).all():
+            raise InputError("phi", "must be finite", value=phi, remedy="give radians")
+        theta = _from_start(-angles.ravel())
+        order = np.argsort(theta)
+        states = np.empty((theta.size, 6))
+        states[order] = median_states(*_unit_part(self.part), theta[order])
+        return states.reshape(*angles.shape, 6)
 
     @property
     def _unit(self) -> float:
@@ -95,6 +112,14 @@ class TurnFunction:
         """Order of the part's rotational symmetry."""
         return self.part.symmetry_order
 
+    @property
+    def neutral(self) -> bool:
+        """True if the part is in equilibrium at every orientation, like a disk, in practice.
+
+        Forces off by `neutral_angle` are enough to turn it from any orientation to any other.
+        """
+        return self.critical_angle < self.neutral_angle
+
     @cached_property
     def critical_angle(self) -> float:
         """Error of the force direction [rad] beyond which no equilibrium is left.
@@ -102,19 +127,34 @@ class TurnFunction:
         Forces off by eps give the moment ``cos(eps) U' - sin(eps) U``, which has no zero once
         ``|tan eps| > max |U'/U|``.
         """
+        return float(np.arctan(steepest_turn(*_unit_part(self.part))[0]))
 
-        def negative_ratio(phi: float) -> float:
-            _, energy, slope, *_ = _states(self.part, phi)[0]
-            return -abs(float(slope / energy))
+    @cached_property
+    def certificate(self) -> TurnCertificate:
+        """Why the equilibria are all there are."""
+        found = np.concatenate([self.stable, self.unstable])
+        cover = sign_changes(self.cells)
+        residual = float(np.abs(self._states(found)[:, 2]).max(initial=0.0))
+        return TurnCertificate(len(found), cover.bound, cover.unresolved, cover.widest, residual)
 
-        grid = np.linspace(0.0, np.pi, 721)
-        states = _states(self.part, grid)
-        best = int(np.argmax(np.abs(states[:, 2] / states[:, 1])))
-        step = grid[1]
-        found = minimize_scalar(
-            negative_ratio, bounds=(grid[best] - step, grid[best] + step), method="bounded"
-        )
-        return float(np.arctan(-found.fun))
+    @cached_property
+    def breakpoints(self) -> Array:
+        """Orientations at which the median passes through a vertex, ascending [rad]."""
+        return np.array([piece.left for piece in self.pieces])
+
+    @cached_property
+    def pieces(self) -> list[MedianPiece]:
+        """Intervals of orientations in which the median crosses the same edges.
+
+        A vertex within 1e-12 of the line, relative to the part's size, may be put on either side.
+        Where the median is not unique, between two pieces of equal area, any of them counts.
+        """
+        theta, vertex, side = median_events(*_unit_part(self.part))
+        order = np.argsort(theta)
+        edges = self.part.unit_edges
+        pieces = median_pieces(edges, theta[order], vertex[order], side)
+        chords = self._states([0.5 * (piece.left + piece.right) for piece in pieces])[:, 4]
+        return pieces if chords.min() > _GAP else crossed_in_the_middle(edges, pieces)
 
     def __repr__(self) -> str:
         """Return the equilibria in degrees."""
@@ -124,7 +164,7 @@ class TurnFunction:
         return f"TurnFunction(stable at {stable} deg, of {self.part!r})"
 
 
-def turn_function(part: Part) -> TurnFunction:
+def turn_function(part: Part, *, neutral_angle: float = NEUTRAL) -> TurnFunction:
     r"""Return the exact turn function of a part.
 
     Stable orientations are the strict local minima of the reduced potential
@@ -135,10 +175,17 @@ def turn_function(part: Part) -> TurnFunction:
     ----------
     part : Part
         Any outline: convex or not, with holes, of several pieces.
+    neutral_angle : float
+        A part whose critical angle is below this counts as neutral [rad].
 
     Returns
     -------
     TurnFunction
+
+    Raises
+    ------
+    InputError
+        `neutral_angle` is negative or not finite.
 
     Examples
     --------
@@ -147,74 +194,37 @@ def turn_function(part: Part) -> TurnFunction:
     >>> turn = turn_function(Part([(0, 0), (1, 0), (1, 1), (0, 1)]))
     >>> [round(float(a), 6) for a in turn.stable]
     [0.785398, 2.356194]
+    >>> turn.certificate.complete
+    True
     """
-    edges = part.unit_edges
-    events = median_events(edges, _HALF)
-
-    def slope(theta: Array) -> Array:
-        values: Array = squeeze_states(edges, theta, _HALF)[:, 2]
-        return values
-
-    knots = np.concatenate([events, events[:1] + np.pi])
-    candidates = [
-        root
-        for a, b in itertools.pairwise(knots)
-        if b - a > 1e-13
-        for root in analytic_roots(slope, a, b)
-    ]
-    rising, falling, neutral = _sign_changes(slope, np.concatenate([events, candidates]))
+    if not (np.isfinite(neutral_angle) and neutral_angle >= 0.0):
+        raise InputError("neutral_angle", "must be at least 0 rad", value=neutral_angle)
+    cells, _ = slope_signs(*_unit_part(part), _rounding(part))
+    found = sign_changes(cells)
     return TurnFunction(
-        part=part,
-        stable=_orientations(rising),
-        unstable=_orientations(falling),
-        breakpoints=_orientations(events),
-        neutral=neutral,
+        part, _orientations(found.rising), _orientations(found.falling), cells, neutral_angle
     )
 
 
-def _sign_changes(
-    slope: Callable[[Array], Array], points: Array
-) -> tuple[list[float], list[float], bool]:
-    """Return where `slope` (of period pi) changes from - to +, from + to -, and if it is zero.
-
-    `points` hold every place where the sign may change; between them it is constant, so one test
-    in each gap decides. Gaps in which the slope is rounding are passed over.
-    """
-    partition = np.unique(np.mod(points, np.pi))
-    partition = partition[np.diff(partition, prepend=-1.0) > 1e-13]
-    tests = partition + 0.5 * np.diff(partition, append=partition[0] + np.pi)
-    values = slope(tests)
-    clear = np.abs(values) > FLAT_MOMENT
-    if not clear.any():
-        return [], [], True
-    tests, signs = tests[clear], np.sign(values[clear])
-    rising: list[float] = []
-    falling: list[float] = []
-    for k in range(len(tests)):
-        a, b = tests[k - 1] - (np.pi if k == 0 else 0.0), tests[k]
-        if signs[k] != signs[k - 1]:
-            root = brentq(
-                lambda theta: float(slope(np.array([theta]))[0]), a, b, xtol=1e-15, rtol=1e-15
-            )
-            (rising if signs[k] > 0 else falling).append(root)
-    return rising, falling, False
+def _unit_part(part: Part) -> tuple[Array, float]:
+    """Return the edges of the part scaled to area 1, and its circumradius."""
+    return part.unit_edges, part.circumradius / part.area**0.5
 
 
-def _orientations(theta: ArrayLike) -> Array:
+def _rounding(part: Part) -> float:
+    """Return the size of U' at area 1 that is rounding: of the largest terms, of many terms."""
+    radius = float(part.circumradius / part.area**0.5)
+    terms = 0.1 * float(np.sqrt(len(part.edges)))
+    return FLAT_MOMENT * max(1.0, radius) * max(1.0, terms)
+
+
+def _from_start(theta: Array) -> Array:
+    """Return directions reduced to [START, START + pi)."""
+    return np.minimum(START + np.mod(theta - START, np.pi), np.nextafter(START + np.pi, 0.0))
+
+
+def _orientations(theta: Array) -> Array:
     """Return ``-theta`` reduced to [0, pi), ascending."""
-    phi = np.mod(-np.asarray(theta, dtype=np.float64), np.pi)
-    phi[np.pi - phi < ANGLE * 1e-3] = 0.0
+    phi = np.mod(-theta, np.pi)
+    phi[np.pi - phi < _WRAP] = 0.0
     return np.sort(phi)
-
-
-def _states(part: Part, phi: ArrayLike) -> Array:
-    theta = np.mod(-np.atleast_1d(np.asarray(phi, dtype=np.float64)).ravel(), np.pi)
-    states: Array = squeeze_states(part.unit_edges, theta, _HALF)
-    return states
-
-
-def _column(part: Part, phi: ArrayLike, column: int) -> Array:
-    values: Array = _states(part, phi)[:, column].reshape(np.shape(phi))
-    # the offset changes sign with the direction of the line, the other columns do not
-    flipped = np.mod(np.floor(-np.asarray(phi, dtype=np.float64) / np.pi), 2) == 1
-    return np.where(flipped, -values, values) if column == 0 else values
