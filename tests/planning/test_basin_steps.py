@@ -105,6 +105,18 @@ def test_odd_shapes(shape, rng):
         assert np.minimum(off, 2 * np.pi - off).max() < 1e-4  # triple roots are known to 1e-5
 
 
+def test_neutral_parts_have_no_steps():
+    angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+    disk = Part(np.column_stack([np.cos(angle), np.sin(angle)]))
+    for function, modulus in (
+        (shift_squeeze_function, 2 * np.pi),
+        (centred_squeeze_function, np.pi),
+    ):
+        squeeze = function(disk)
+        assert len(squeeze.breaks) == 0
+        assert squeeze.period == squeeze.modulus == modulus
+
+
 def test_bands_swallow_steps_that_stay_in_order():
     """A swallowed step ends before it begins; places and images still ascend."""
     squeeze = unknown_offset_function(PARTS["simple_16"], 10.0)
