@@ -5,7 +5,7 @@ import shapely
 from limitsurf.actuators.actuator_array import load_array
 from limitsurf.errors import InputError, PartTooHeavy
 from limitsurf.geometry.part import Part
-from limitsurf.motion.trajectory import Outcome
+from limitsurf.motion.trajectory import EventKind, Outcome
 from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.verification import verify_alignment
 
@@ -122,6 +122,31 @@ def test_small_arrays_and_heavy_parts(plan, paper_t):
         verify_alignment(plan, paper_t, load_array("resonator32"))
     with pytest.raises(PartTooHeavy, match="would lift it"):
         verify_alignment(plan, paper_t, load_array("resonator64", voltage=10.0))
+
+
+def test_centred_plans_centre_first(paper_t, array64):
+    """A linear radial field and then the squeeze, as one motion on each line."""
+    plan = plan_alignment(paper_t, model="centred")
+    result = verify_alignment(plan, paper_t, array64, samples=8, seed=1)
+    assert result.rate == 1.0
+    assert [len(stages) for stages in result.stages] == [2, 2]
+    replay = result.replay(3)
+    assert np.array_equal([path.final_pose for path in replay], result.poses[3, 1:])
+    for path in replay:
+        (switch,) = [e.time for e in path.events if e.kind is EventKind.SWITCH]
+        before = path.poses[np.searchsorted(path.times, switch)]
+        assert np.hypot(before[0], before[1]) < 0.1 * paper_t.circumradius
+
+
+def test_push_squeeze_plans_squeeze_towards_a_line_beside_the_part(paper_t, array64):
+    plan = plan_alignment(paper_t, model="push-squeeze")
+    with pytest.raises(InputError, match="larger array"):
+        verify_alignment(plan, paper_t, array64)
+    array = load_array("resonator128")
+    result = verify_alignment(plan, paper_t, array, samples=4, seed=1)
+    for line, poses in zip(plan.lines, result.poses.transpose(1, 0, 2)[1:], strict=True):
+        across = poses[:, :2] @ [-np.sin(line), np.cos(line)]
+        assert np.abs(across / paper_t.circumradius + 1.1).max() < 0.5
 
 
 @pytest.mark.slow

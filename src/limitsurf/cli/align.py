@@ -17,8 +17,8 @@ from rich.table import Table
 from limitsurf.errors import InputError
 
 if TYPE_CHECKING:
+    from limitsurf.planning.array_verification import ArrayVerification
     from limitsurf.planning.turn_function import TurnFunction
-    from limitsurf.planning.verification import Verification
 
 __all__ = ["align"]
 
@@ -157,7 +157,7 @@ def _check_out(out: Path | None) -> None:
         raise InputError("out", f"{nearest} cannot be written", remedy="name another folder")
 
 
-def _write(out: Path, turn: TurnFunction, verification: Verification) -> None:
+def _write(out: Path, turn: TurnFunction, verification: ArrayVerification) -> None:
     """Write all files beside the folder first, then move them in: never a half-written one."""
     from limitsurf.report.alignment import alignment_page
 
@@ -172,7 +172,7 @@ def _write(out: Path, turn: TurnFunction, verification: Verification) -> None:
             shutil.move(draft / name, out / name)
 
 
-def _print(turn: TurnFunction, verification: Verification, seconds: float) -> None:
+def _print(turn: TurnFunction, verification: ArrayVerification, seconds: float) -> None:
     from limitsurf.report.alignment import plan_rows, summary_rows, verdict
 
     console = Console()

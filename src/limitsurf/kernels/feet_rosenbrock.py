@@ -13,38 +13,15 @@ matrix of size three is inverted.
 
 from __future__ import annotations
 
-import numpy as np
-
 from limitsurf.kernels.compile import Floats, compiled
 from limitsurf.kernels.contact_problem import Rows, inverse_rows, times_rows
 from limitsurf.kernels.feet_rates import Feet, Freedom, Rate, curvature, rate, turning_about
 from limitsurf.kernels.load_table import Load
+from limitsurf.kernels.rodas import ALPHA, GAMMA, RATES, A, C
 from limitsurf.kernels.symmetric3 import Symmetric, times
 from limitsurf.kernels.vectors import Vector, along, scaled
 
 __all__ = ["rosenbrock_step"]
-
-_GAMMA = 0.25
-_TIMES = np.array([0.0, 0.386, 0.21, 0.63, 1.0, 1.0])
-_RATES = np.array([0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0])
-_A = np.zeros((6, 6))
-_A[1, 0] = 1.544
-_A[2, :2] = 0.9466785280815826, 0.2557011698983284
-_A[3, :3] = 3.314825187068521, 2.896124015972201, 0.9986419139977817
-_A[4, :4] = 1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950
-_A[5, :5] = *_A[4, :4], 1.0
-_C = np.zeros((6, 6))
-_C[1, 0] = -5.6688
-_C[2, :2] = -2.430093356833875, -0.2063599157091915
-_C[3, :3] = -0.1073529058151375, -9.594562251023355, -20.47028614809616
-_C[4, :4] = 7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160
-_C[5, :5] = (
-    8.083246795921522,
-    -7.981132988064893,
-    -31.52159432874371,
-    16.31930543123136,
-    -6.058818238834054,
-)
 
 
 @compiled
@@ -107,21 +84,21 @@ def rosenbrock_step(
     H = curvature(feet.data, v)
     by_angle = _by_mass(feet, freedom, now.by_angle)
     by_time = _by_mass(feet, freedom, now.by_time)
-    step = _GAMMA * h
+    step = GAMMA * h
     inverse = _inverse(_jacobian(feet, freedom, v, H), 1.0 / step, scaled(step, by_angle))
     w, angle, change, turn = v, theta, now.v, v[2]
     for i in range(6):
         if i > 0:
             w, angle = v, theta
             for j in range(i):
-                w = along(w, _A[i, j], (U[j, 0], U[j, 1], U[j, 2]))
-                angle += _A[i, j] * U[j, 3]
-            there = rate(feet, freedom, load, t + _TIMES[i] * h, w, angle)
+                w = along(w, A[i, j], (U[j, 0], U[j, 1], U[j, 2]))
+                angle += A[i, j] * U[j, 3]
+            there = rate(feet, freedom, load, t + ALPHA[i] * h, w, angle)
             change, turn = there.v, w[2]
-        change = along(change, _RATES[i] * h, by_time)
+        change = along(change, RATES[i] * h, by_time)
         for j in range(i):
-            change = along(change, _C[i, j] / h, (U[j, 0], U[j, 1], U[j, 2]))
-            turn += _C[i, j] / h * U[j, 3]
+            change = along(change, C[i, j] / h, (U[j, 0], U[j, 1], U[j, 2]))
+            turn += C[i, j] / h * U[j, 3]
         u = times_rows(inverse, along(change, step * turn, by_angle))
         U[i, 0], U[i, 1], U[i, 2], U[i, 3] = u[0], u[1], u[2], step * (turn + u[2])
     error = U[5, 0], U[5, 1], U[5, 2]

@@ -26,8 +26,9 @@ class SqueezeFunction:
     ----------
     breaks, ends : (k,) float
         Left and right ends of the steps, ascending, the first in [0, modulus) [rad]. Where a step
-        ends before the next one begins, starts between the two may come to either image. Empty
-        for a neutral part, which stays as it is.
+        ends before the next one begins, starts between the two may come to either image; a step
+        that ends before it begins is sure of no start, but its image counts in every arc across
+        it. Empty for a neutral part, which stays as it is.
     images : (k,) float
         Orientations at rest, in the order of the steps, not reduced [rad].
     period : float

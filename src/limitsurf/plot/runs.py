@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from limitsurf.actuators.activation import Activation
 from limitsurf.motion.trajectory import Trajectory
-from limitsurf.planning.verification import Verification
+from limitsurf.planning.array_verification import ArrayVerification
 from limitsurf.plot.part import outline_path
 from limitsurf.plot.style import COLORS, DIRECTION_COLORS, lay_out
 
@@ -19,12 +19,12 @@ __all__ = ["animate_runs"]
 Array = NDArray[np.float64]
 
 
-def animate_runs(verification: Verification, *, runs: int = 6, frames: int = 60) -> Any:
+def animate_runs(verification: ArrayVerification, *, runs: int = 6, frames: int = 60) -> Any:
     """Return a plotly figure that plays the first runs side by side, with slider and buttons.
 
     Parameters
     ----------
-    verification : Verification
+    verification : ArrayVerification
         From `verify_alignment`; the runs are simulated again.
     runs : int
         How many; runs that failed come first.
@@ -74,7 +74,7 @@ def _show(line: int, lines: int) -> list[dict[str, Any]]:
     ]
 
 
-def _caption(verification: Verification, line: int, time: float) -> str:
+def _caption(verification: ArrayVerification, line: int, time: float) -> str:
     angle = np.degrees(verification.plan.lines[line])
     return f"Line {line + 1} at {angle:.1f} deg, {time:.2f} s"
 
@@ -91,7 +91,7 @@ def _pose(replay: list[Trajectory], line: int, time: float) -> Array:
     return np.array([np.interp(time, trajectory.times, q) for q in trajectory.poses.T])
 
 
-def _parts(verification: Verification, shown: list[int], poses: list[Array]) -> list[Any]:
+def _parts(verification: ArrayVerification, shown: list[int], poses: list[Array]) -> list[Any]:
     import plotly.graph_objects as go
 
     part = verification.part
@@ -114,7 +114,7 @@ def _parts(verification: Verification, shown: list[int], poses: list[Array]) -> 
     return traces
 
 
-def _ground(verification: Verification, visible: int) -> list[Any]:
+def _ground(verification: ArrayVerification, visible: int) -> list[Any]:
     """Return, for every line, the pixels coloured by their push, and the line."""
     import plotly.graph_objects as go
 

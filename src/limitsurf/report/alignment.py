@@ -11,8 +11,8 @@ import numpy as np
 
 import limitsurf
 from limitsurf.actuators.activation import direction_error
+from limitsurf.planning.array_verification import ArrayVerification
 from limitsurf.planning.turn_function import TurnFunction
-from limitsurf.planning.verification import Verification
 from limitsurf.plot.errors import draw_errors
 from limitsurf.plot.part import draw_part
 from limitsurf.plot.runs import animate_runs
@@ -24,7 +24,7 @@ __all__ = ["alignment_page", "plan_rows", "summary_rows", "verdict"]
 Rows = list[tuple[str, ...]]
 
 
-def summary_rows(turn: TurnFunction, verification: Verification) -> Rows:
+def summary_rows(turn: TurnFunction, verification: ArrayVerification) -> Rows:
     """Return what was simulated and what came out, as (name, value) rows."""
     array, part = verification.activations[0].array, verification.part
     low, high = verification.interval
@@ -61,7 +61,7 @@ def summary_rows(turn: TurnFunction, verification: Verification) -> Rows:
     ]
 
 
-def plan_rows(verification: Verification) -> Rows:
+def plan_rows(verification: ArrayVerification) -> Rows:
     """Return the plan as rows (step, line angle, margin, share of runs at rest)."""
     plan = verification.plan
     at_rest = (verification.outcomes == 1).mean(axis=0)
@@ -73,7 +73,7 @@ def plan_rows(verification: Verification) -> Rows:
     ]
 
 
-def verdict(verification: Verification) -> str:
+def verdict(verification: ArrayVerification) -> str:
     """Return the outcome in one sentence."""
     plan = verification.plan
     aligned = int(verification.successes.sum())
@@ -85,7 +85,7 @@ def verdict(verification: Verification) -> str:
     )
 
 
-def alignment_page(turn: TurnFunction, verification: Verification) -> str:
+def alignment_page(turn: TurnFunction, verification: ArrayVerification) -> str:
     """Return the report as one HTML page that needs no other file."""
     from plotly.offline import get_plotlyjs
 
@@ -137,5 +137,5 @@ def _margin(margin: float) -> str:
     return f"{np.degrees(margin):.2f} deg" if np.isfinite(margin) else "any angle"
 
 
-def _median_error(verification: Verification) -> float:
+def _median_error(verification: ArrayVerification) -> float:
     return float(np.degrees(np.median(np.abs(verification.errors))))
