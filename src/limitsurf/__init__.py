@@ -73,6 +73,10 @@ if TYPE_CHECKING:
     from limitsurf.motion.walk import walk as walk
     from limitsurf.planning.alignment import AlignmentPlan as AlignmentPlan
     from limitsurf.planning.alignment import plan_alignment as plan_alignment
+    from limitsurf.planning.array_verification import ArrayVerification as ArrayVerification
+    from limitsurf.planning.basin_steps import centred_squeeze_function as centred_squeeze_function
+    from limitsurf.planning.basin_steps import shift_squeeze_function as shift_squeeze_function
+    from limitsurf.planning.basin_steps import unknown_offset_function as unknown_offset_function
     from limitsurf.planning.diameter_function import DiameterFunction as DiameterFunction
     from limitsurf.planning.diameter_function import diameter_function as diameter_function
     from limitsurf.planning.duration import expected_duration as expected_duration
@@ -80,11 +84,17 @@ if TYPE_CHECKING:
     from limitsurf.planning.equilibria import Equilibria as Equilibria
     from limitsurf.planning.equilibria import equilibria as equilibria
     from limitsurf.planning.field_errors import FieldErrors as FieldErrors
+    from limitsurf.planning.ideal_squeeze import IdealSqueeze as IdealSqueeze
+    from limitsurf.planning.ideal_squeeze import SqueezePath as SqueezePath
+    from limitsurf.planning.ideal_verification import IdealVerification as IdealVerification
     from limitsurf.planning.line_plan import LinePlan as LinePlan
     from limitsurf.planning.median_pieces import MedianPiece as MedianPiece
     from limitsurf.planning.plan_lines import plan_lines as plan_lines
     from limitsurf.planning.robustness import Robustness as Robustness
     from limitsurf.planning.robustness import robustness as robustness
+    from limitsurf.planning.separatrices import Separatrix as Separatrix
+    from limitsurf.planning.separatrices import boundary_shift as boundary_shift
+    from limitsurf.planning.separatrices import separatrices as separatrices
     from limitsurf.planning.skewed_equilibria import skewed_equilibria as skewed_equilibria
     from limitsurf.planning.squeeze_function import SqueezeFunction as SqueezeFunction
     from limitsurf.planning.squeeze_function import squeeze_function as squeeze_function
@@ -118,6 +128,7 @@ _HOME = {
     "Activation": "actuators.activation",
     "ActuatorArray": "actuators.actuator_array",
     "AlignmentPlan": "planning.alignment",
+    "ArrayVerification": "planning.array_verification",
     "Carried": "actuators.carrying",
     "ContactSet": "contacts.contact_set",
     "ContactSum": "sets.contact_sum",
@@ -132,6 +143,8 @@ _HOME = {
     "FloatingPart": "actuators.resonator_contact",
     "FrictionLoad": "contacts.friction_load",
     "HPolytope": "sets.h_polytope",
+    "IdealSqueeze": "planning.ideal_squeeze",
+    "IdealVerification": "planning.ideal_verification",
     "LatticeContacts": "contacts.lattice_contacts",
     "LinePlan": "planning.line_plan",
     "LinearImage": "sets.linear_image",
@@ -153,8 +166,10 @@ _HOME = {
     "Runs": "motion.simulate_many",
     "Schedule": "motion.schedule",
     "Section": "sets.sections",
+    "Separatrix": "planning.separatrices",
     "SoftContact": "contacts.soft_contact",
     "SqueezeFunction": "planning.squeeze_function",
+    "SqueezePath": "planning.ideal_squeeze",
     "SteadyWalk": "motion.steady_walk",
     "TipDissipation": "contacts.tip_dissipation",
     "TorsionalResonator": "actuators.torsional_resonator",
@@ -168,7 +183,9 @@ _HOME = {
     "Zonotope": "sets.zonotope",
     "activate": "actuators.realised_field",
     "air_film_drag": "motion.drag",
+    "boundary_shift": "planning.separatrices",
     "carry": "actuators.carrying",
+    "centred_squeeze_function": "planning.basin_steps",
     "contact_map": "contacts.coulomb",
     "coulomb_contact": "contacts.coulomb",
     "diameter_function": "planning.diameter_function",
@@ -200,7 +217,9 @@ _HOME = {
     "realise": "actuators.realised_field",
     "robustness": "planning.robustness",
     "section": "sets.sections",
+    "separatrices": "planning.separatrices",
     "share_load": "contacts.load_sharing",
+    "shift_squeeze_function": "planning.basin_steps",
     "simulate": "motion.simulate",
     "simulate_many": "motion.simulate_many",
     "skewed_equilibria": "planning.skewed_equilibria",
@@ -213,6 +232,7 @@ _HOME = {
     "transport": "sets.linear_image",
     "turn_function": "planning.turn_function",
     "uniform_field": "actuators.force_fields",
+    "unknown_offset_function": "planning.basin_steps",
     "verify_alignment": "planning.verification",
     "walk": "motion.walk",
 }

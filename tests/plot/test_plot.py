@@ -160,7 +160,7 @@ def test_there_is_something_to_draw():
 
 
 def test_alignment_ends_alike_with_the_median_on_the_line():
-    """Whatever the start, the last column shows one orientation; each half of the part is a half."""
+    """Whatever the start, the last column is the same; lines halve the part."""
     plan = plan_alignment(Part.from_file("paper_t"))
     starts = [0.3, 2.0]
     figure = plot.draw_alignment(plan, starts)

@@ -134,7 +134,7 @@ def _angles(text: str) -> list[float]:
     ]
 
 
-def _report(verification: Verification, out: Path | None, begin: float) -> None:
+def _report(verification: ArrayVerification, out: Path | None, begin: float) -> None:
     """Write the files, if there is a folder for them, and print what came out."""
     from limitsurf.planning.turn_function import turn_function
 

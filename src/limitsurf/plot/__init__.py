@@ -12,6 +12,7 @@ from limitsurf.plot.errors import draw_errors
 from limitsurf.plot.limit_curve import draw_limit_curve
 from limitsurf.plot.limit_surface import draw_limit_surface
 from limitsurf.plot.part import draw_part
+from limitsurf.plot.phase import draw_phase_portrait
 from limitsurf.plot.robustness import draw_robustness
 from limitsurf.plot.runs import animate_runs
 from limitsurf.plot.squeeze import draw_plan, draw_squeeze_function
@@ -27,6 +28,7 @@ __all__ = [
     "draw_limit_curve",
     "draw_limit_surface",
     "draw_part",
+    "draw_phase_portrait",
     "draw_plan",
     "draw_robustness",
     "draw_squeeze_function",
