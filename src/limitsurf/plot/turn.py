@@ -45,6 +45,7 @@ def draw_turn_function(turn: TurnFunction) -> Any:
             mode="markers",
             name=name,
             marker={"color": color, "symbol": symbol, "size": 11},
+            cliponaxis=False,
         )
     figure.update_xaxes(range=[0, 180], dtick=30)
     return lay_out(figure, x="orientation phi [deg]", y="turn function t [1]")
