@@ -35,6 +35,14 @@ def draw_alignment(plan: AlignmentPlan, starts: ArrayLike) -> Any:
         The plan.
     starts : (n,) float
         Orientations at the start [rad].
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> figure = draw_alignment(plan_alignment(Part.from_file("paper_t")), [0.3, 2.0])
+    >>> figure.layout.yaxis.ticktext
+    ('17 deg', '115 deg')
     """
     import plotly.graph_objects as go
 

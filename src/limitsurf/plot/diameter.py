@@ -16,7 +16,21 @@ _FLAT = 0.8  # where the least distance is above this share of the largest, 0 is
 
 
 def draw_diameter_function(diameter: DiameterFunction) -> Any:
-    """Return a plotly figure of the distance of the jaws, with its minima and maxima."""
+    """Return a plotly figure of the distance of the jaws, with its minima and maxima.
+
+    Parameters
+    ----------
+    diameter : DiameterFunction
+        From `diameter_function`.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.diameter_function import diameter_function
+    >>> part = Part([(0, 0), (2e-3, 0), (2e-3, 1e-3), (0, 1e-3)])
+    >>> draw_diameter_function(diameter_function(part)).layout.yaxis.title.text
+    'distance of the jaws [mm]'
+    """
     import plotly.graph_objects as go
 
     phi = np.unique(np.concatenate([np.linspace(0.0, np.pi, 721), diameter.breakpoints]))

@@ -32,6 +32,13 @@ def draw_equilibria(part: Part, field: LoadField, found: Equilibria | None = Non
     found : Equilibria, optional
         The poses, if they are known already. Stable ones are filled, saddles dotted, others
         dashed; along a line, where all shifts are at rest, they are drawn side by side.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.density_field import DensityField
+    >>> part = Part.from_file("paper_t")
+    >>> draw_equilibria(part, DensityField.squeeze(0.0, 1.0)).layout.xaxis.title.text
+    'x [mm]'
     """
     import plotly.graph_objects as go
 

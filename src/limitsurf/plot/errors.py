@@ -13,7 +13,13 @@ __all__ = ["draw_errors"]
 
 
 def draw_errors(verification: Verification) -> Any:
-    """Return a plotly histogram of the errors of the final orientation, with the tolerance."""
+    """Return a plotly histogram of the errors of the final orientation, with the tolerance.
+
+    Parameters
+    ----------
+    verification : Verification
+        From `verify_alignment`.
+    """
     import plotly.graph_objects as go
 
     errors, tolerance = np.degrees(verification.errors), float(np.degrees(verification.tolerance))

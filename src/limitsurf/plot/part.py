@@ -41,6 +41,14 @@ def draw_part(part: Part, turn: TurnFunction | None = None) -> Any:
         The part, drawn in the coordinates of its outline.
     turn : TurnFunction, optional
         Draws stable medians thick, unstable ones thin and dotted.
+
+    Examples
+    --------
+    >>> from limitsurf.planning.turn_function import turn_function
+    >>> square = Part([(0, 0), (1e-3, 0), (1e-3, 1e-3), (0, 1e-3)], name="square")
+    >>> figure = draw_part(square, turn_function(square))
+    >>> [trace.name for trace in figure.data][:3]
+    ['square', 'centre of mass', 'stable median']
     """
     import plotly.graph_objects as go
 

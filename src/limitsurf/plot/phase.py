@@ -37,6 +37,12 @@ def draw_phase_portrait(part: Part, mobility_ratio: float = 1.0, *, paths: int =
         See `IdealSqueeze`.
     paths : int
         Starts on each side from which a path is drawn.
+
+    Examples
+    --------
+    >>> figure = draw_phase_portrait(Part.from_file("paper_t"), paths=4)
+    >>> [trace.name for trace in figure.data][-3:]
+    ['separatrix', 'stable', 'unstable']
     """
     import plotly.graph_objects as go
 

@@ -20,6 +20,21 @@ def draw_robustness(robustness: Robustness) -> Any:
 
     Wide, pale bars hold them with all errors at their worst, narrow ones likely; points mark where
     the plan without errors would be.
+
+    Parameters
+    ----------
+    robustness : Robustness
+        From `AlignmentPlan.robustness`.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> from limitsurf.planning.field_errors import FieldErrors
+    >>> plan = plan_alignment(Part.from_file("paper_t"))
+    >>> figure = draw_robustness(plan.robustness(FieldErrors(direction=0.01)))
+    >>> figure.layout.yaxis.title.text
+    "orientation in the array's frame [deg]"
     """
     import plotly.graph_objects as go
 

@@ -22,6 +22,19 @@ def draw_squeeze_function(squeeze: SqueezeFunction) -> Any:
     """Return a plotly figure of the steps of a squeeze function over one modulus of orientations.
 
     Where steps leave gaps, both images that may come are drawn, dotted.
+
+    Parameters
+    ----------
+    squeeze : SqueezeFunction
+        The step function of any model.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.basin_steps import unknown_offset_function
+    >>> figure = draw_squeeze_function(unknown_offset_function(Part.from_file("paper_t")))
+    >>> [trace.name for trace in figure.data]
+    ['squeeze function s', 'either of two', 'unchanged']
     """
     import plotly.graph_objects as go
 
@@ -57,6 +70,19 @@ def draw_plan(plan: LinePlan) -> Any:
 
     What leaves the picture at the top comes back at the bottom. Bars about the orientations before
     a line are its margin: by so much may the line's angle be off.
+
+    Parameters
+    ----------
+    plan : AlignmentPlan or LinePlan
+        The plan.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> figure = draw_plan(plan_alignment(Part.from_file("paper_t")))
+    >>> figure.layout.xaxis.ticktext
+    ('start', 'line 1<br>0.0 deg', 'line 2<br>45.0 deg')
     """
     import plotly.graph_objects as go
 
