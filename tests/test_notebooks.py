@@ -10,6 +10,7 @@ PRINTED = {
     "01_active_contacts": ("Wheel(", "all numbers hold"),
     "02_walker": ("SteadyWalk(held)", "all numbers hold"),
     "03_slider_on_array": ("Runs(200: 200 at rest)", "all numbers hold"),
+    "04_alignment": ("TurnCertificate(complete", "cannot be aligned", "all numbers hold"),
     "align_a_part": ("AlignmentPlan(", "Verification("),
 }
 

@@ -46,7 +46,6 @@ def _contacts() -> None:
     for mode in ("inertial", "quasi-static"):
         ls.simulate(part, drive, duration=1e-3, mode=mode, method="events")
     ls.LatticeContacts(part, 1e-4, (0.0, 0.0)).move((0.0, 0.0, 0.1))
-    ls.plan_alignment(part)
 
 
 def _motion() -> None:
@@ -82,10 +81,25 @@ def _resonators() -> None:
     sweep_resonators(resonator, 3e-8, 50.0, 0.3)
 
 
+def _planning() -> None:
+    """Plan and verify an alignment in the ideal field, and look for equilibria once."""
+    import limitsurf as ls
+
+    part = ls.Part.from_file("paper_t")
+    turn = ls.turn_function(part)
+    turn.critical_angle, turn.pieces, turn.certificate, turn.moment(0.0)
+    plan = ls.plan_alignment(part, model="centred")
+    ls.verify_alignment(plan, part, ls.IdealSqueeze(1.0), samples=2)
+    ls.expected_duration(plan, ls.load_array("resonator64"))
+    for far in (0.0, 10.0):
+        ls.RadialField(1.0).load(part, (far * part.circumradius, 0.0, 0.0))
+
+
 #: What is compiled side by side, the longest first: groups that share few kernels.
 GROUPS: dict[str, Callable[[], None]] = {
     "contacts and arrays": _contacts,
     "motion": _motion,
+    "planning": _planning,
     "convex sets": _sets,
     "resonators": _resonators,
 }
