@@ -131,6 +131,13 @@ def test_models(capsys, tmp_path, model):
     assert ("after centring" in page) == (model != "unknown-offset")
 
 
+def test_pushes_off_the_normal_are_lost_and_their_time_is_not_known(capsys):
+    code, out, _ = run(capsys, "align", "paper_t", *GOOD, "--method", "nearest")
+    assert code == 0
+    assert re.search(r"^2 .* lost +not known", out, re.MULTILINE)
+    assert re.search(r"expected time to align +not known", out)
+
+
 def test_pieces(capsys, tmp_path):
     part = wkt(tmp_path, TWO)
     code, out, _ = run(capsys, "align", part, "--pieces", *MM)

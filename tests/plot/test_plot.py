@@ -6,6 +6,7 @@ import shapely
 import shapely.affinity
 
 from limitsurf import plot
+from limitsurf.actuators.actuator_array import load_array
 from limitsurf.contacts.coulomb import coulomb_contact
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
@@ -122,6 +123,20 @@ def test_animation_colours_pixels_by_their_push(verification):
     pushes = np.array(figure.data[0].z)  # line at 0 degrees: down above it, up below
     assert np.all(pushes[32:] == 3)
     assert np.all(pushes[:32] == 2)
+
+
+def test_animation_of_a_push_squeeze_shows_the_line_beside_the_centre(paper_t):
+    """The line is where the pixels change their push, a circumradius and more from the centre."""
+    array = load_array("resonator128").running_under(paper_t)
+    plan = plan_alignment(paper_t, model="push-squeeze")
+    verification = verify_alignment(plan, paper_t, array, samples=1, seed=2)
+    figure = plot.animate_runs(verification, runs=1, frames=2)
+    pixels, line = figure.data[:2]
+    rows = np.asarray(pixels.z)[:, 0]  # the first line lies at 0 degrees
+    below, above = np.asarray(pixels.y)[rows == 2], np.asarray(pixels.y)[rows == 3]
+    assert below.max() < np.mean(line.y) < above.min()
+    assert np.mean(line.y) == pytest.approx(-1.1e3 * paper_t.circumradius)
+    assert "after centring the part" in figure.layout.title.text
 
 
 def drawn(trace):

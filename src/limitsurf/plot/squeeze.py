@@ -92,7 +92,7 @@ def draw_plan(plan: LinePlan) -> Any:
     figure = go.Figure()
     x, y = _turns(stages, turns, modulus)
     figure.add_scatter(
-        x=x, y=y, mode="lines", line={"color": COLORS[0], "width": 0.7}, name="orientations"
+        x=x, y=y, mode="lines", line={"color": COLORS[0], "width": 1.0}, name="orientations"
     )
     if len(plan.lines) > 1:
         _add_margins(figure, stages[1:-1], plan.margins[1:], modulus)
