@@ -1,5 +1,7 @@
 """Plans from bare step functions, with lines of any angle."""
 
+from time import perf_counter
+
 import numpy as np
 import pytest
 from step_twins import ends_of, naive_chain, random_steps, shortest_by_sets
@@ -173,3 +175,15 @@ def test_bands_may_leave_no_plan():
         plan_lines(squeeze)
     assert caught.value.reachable_margin == 0.0
     assert caught.value.plan is None
+
+
+@pytest.mark.parametrize("off", [1e-8, 1e-7, 1e-4])
+def test_steps_that_nearly_repeat_are_planned_at_once(off):
+    breaks = np.array([0.3, 0.3 + np.pi / 2 + off])
+    ends = np.append(breaks[1:], breaks[0] + np.pi)
+    squeeze = SqueezeFunction(breaks, ends, 0.5 * (breaks + ends), np.pi)
+    begin = perf_counter()
+    plan = plan_lines(squeeze)
+    assert perf_counter() - begin < 1.0
+    assert len(plan.lines) == 2
+    assert plan.least_margin == pytest.approx(0.5 * off, rel=1e-6)

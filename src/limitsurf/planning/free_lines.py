@@ -15,6 +15,7 @@ there may be shorter ones.
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,12 +124,16 @@ def _backwards(steps: _Steps, gap: float, most: float = np.inf) -> tuple[Chain, 
 
 
 def _room(width: float, gap: float) -> float:
-    """Return the largest float that subtracted from `width` leaves at least `gap`."""
-    room = width - gap
+    """Return the largest float that subtracted from `width` leaves at least `gap`.
+
+    Differences from half an ulp below the gap on are rounded to it. Where the gap is nearly the
+    width, many floats lie within that half ulp.
+    """
+    room = width - gap + 0.5 * (gap - math.nextafter(gap, -math.inf))
     while width - room < gap:
-        room = float(np.nextafter(room, -np.inf))
-    while width - np.nextafter(room, np.inf) >= gap:
-        room = float(np.nextafter(room, np.inf))
+        room = math.nextafter(room, -math.inf)
+    while width - math.nextafter(room, math.inf) >= gap:
+        room = math.nextafter(room, math.inf)
     return room
 
 
