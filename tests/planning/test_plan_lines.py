@@ -1,5 +1,6 @@
 """Plans from bare step functions, with lines of any angle."""
 
+import math
 from time import perf_counter
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from step_twins import ends_of, naive_chain, random_steps, shortest_by_sets
 
 from limitsurf.errors import InputError, NoPlan
+from limitsurf.planning.free_lines import _room
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.squeeze_function import SqueezeFunction
 from limitsurf.tolerances import LINE_MARGIN
@@ -187,3 +189,14 @@ def test_steps_that_nearly_repeat_are_planned_at_once(off):
     assert perf_counter() - begin < 1.0
     assert len(plan.lines) == 2
     assert plan.least_margin == pytest.approx(0.5 * off, rel=1e-6)
+
+
+def test_room_is_the_largest_float_that_leaves_the_gap(rng):
+    for _ in range(3000):
+        width = rng.uniform(0.0, 3.0) * 10.0 ** -rng.integers(0, 9)
+        gap = width - rng.choice([-1.0, 1.0]) * 10.0 ** -rng.uniform(0, 18)
+        gap = rng.choice([gap, rng.uniform(0.0, 3.0), width, math.nextafter(width, 0.0)])
+        if gap > 0.0:
+            room = _room(width, gap)
+            assert width - room >= gap
+            assert width - math.nextafter(room, math.inf) < gap

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.squeeze_flow import MOVING, flow_trace, settle
-from limitsurf.sets.arguments import as_number, writable
+from limitsurf.sets.arguments import as_number, as_numbers, writable
 
 __all__ = ["IdealSqueeze", "SqueezePath", "as_mobility_ratio", "turning_mobility"]
 
@@ -117,11 +117,12 @@ class IdealSqueeze:
         `step_error` [rad], for lengths relative to the side of a square of the part's area, blurs
         the borders of the basins; where a motion ends is exact.
         """
-        z, angle = np.broadcast_arrays(
-            np.asarray(offset, dtype=np.float64), np.asarray(phi, dtype=np.float64)
-        )
-        if not (np.isfinite(z).all() and np.isfinite(angle).all()):
-            raise InputError("offset, phi", "have entries that are not finite")
+        z, angle = as_numbers("offset", offset), as_numbers("phi", phi)
+        try:
+            z, angle = np.broadcast_arrays(z, angle)
+        except ValueError as error:
+            problem = f"have shapes {z.shape} and {angle.shape}, which do not fit"
+            raise InputError("offset, phi", problem) from error
         unit = part.area**0.5
         starts = np.column_stack([z.ravel() / unit, -angle.ravel()])
         edges, kappa = writable(part.unit_edges), turning_mobility(part, self.mobility_ratio)

@@ -204,6 +204,8 @@ def robustness(
 
 def _given(errors: FieldErrors | Sequence[FieldErrors], lines: int) -> Iterator[FieldErrors]:
     """Yield errors that a user gave, one for each line."""
+    if not isinstance(errors, FieldErrors | Sequence):
+        raise InputError("array", "is no ActuatorArray and no FieldErrors", value=errors)
     each = [errors] * lines if isinstance(errors, FieldErrors) else list(errors)
     if len(each) != lines:
         raise InputError("array", f"holds errors of {len(each)} lines; the plan has {lines}")

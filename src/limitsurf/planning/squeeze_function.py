@@ -9,6 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_numbers
 from limitsurf.tolerances import ANGLE
 
 __all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
@@ -59,7 +61,7 @@ class SqueezeFunction:
 
     def follow(self, phi: ArrayLike) -> Array:
         """Return the orientation after a squeeze, not reduced: phi and how far the part turns."""
-        start = np.asarray(phi, dtype=np.float64)
+        start = as_numbers("phi", phi)
         if len(self.breaks) == 0:
             return start
         turns = self.modulus * np.floor((start - self.breaks[0]) / self.modulus)
@@ -101,7 +103,7 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     Parameters
     ----------
     turn : TurnFunction or DiameterFunction
-        From `turn_function` or `diameter_function`.
+        From `turn_function` or `diameter_function`; anything else is an InputError.
 
     Examples
     --------
@@ -110,6 +112,10 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     >>> squeeze_function(turn_function(Part([(0, 0), (2, 0), (2, 1), (0, 1)])))
     SqueezeFunction([90.00, 270.00) -> 180.00; period 180 deg)
     """
+    if not hasattr(turn, "unstable"):
+        raise InputError(
+            "turn", "is no turn function", value=turn, remedy="give turn_function(part)"
+        )
     if turn.neutral:
         return SqueezeFunction(np.empty(0), np.empty(0), np.empty(0), np.pi)
     before_first = turn.stable < turn.unstable[0]
