@@ -173,3 +173,18 @@ def test_final_orientation_is_stable_relative_to_the_last_line():
             angle_distance([relative], [stable[np.argmin(np.abs(stable - relative))]], plan.period)
             < 1e-9
         )
+
+
+def test_a_plan_is_not_longer_for_rounding():
+    """Two plans have one margin, but for its last digit; the shorter one is reported."""
+    pieces = [shapely.box(0, 0, 1, 1), shapely.box(2, 1, 2.7, 3)]
+    turned = shapely.affinity.rotate(shapely.box(-1, 3, 0.3, 4), 20)
+    part = Part(shapely.MultiPolygon([*pieces, turned]))
+    with pytest.raises(NoPlan) as found:
+        plan_alignment(part, model="push-squeeze", min_margin=1.0)
+    best = found.value.plan
+    assert found.value.reachable_margin == best.least_margin
+    slack = best.least_margin * (1.0 - 1e-9)
+    assert len(best.lines) == len(
+        plan_alignment(part, model="push-squeeze", min_margin=slack).lines
+    )

@@ -200,3 +200,12 @@ def test_room_is_the_largest_float_that_leaves_the_gap(rng):
             room = _room(width, gap)
             assert width - room >= gap
             assert width - math.nextafter(room, math.inf) < gap
+
+
+def test_steps_that_all_but_repeat_are_said_to():
+    off = 1.8e-9  # more than steps that are one, less than the margins of a plan
+    breaks = np.array([0.3, 0.3 + np.pi / 2 + off])
+    ends = np.append(breaks[1:], breaks[0] + np.pi)
+    with pytest.raises(NoPlan, match="every 90 deg the steps repeat") as found:
+        plan_lines(SqueezeFunction(breaks, ends, 0.5 * (breaks + ends), np.pi))
+    assert found.value.reachable_margin == 0.0

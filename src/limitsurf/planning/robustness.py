@@ -103,7 +103,7 @@ class Robustness:
         )
         width, margin = np.degrees(self.final_width), np.degrees(self.least_margin)
         left = f"margin {margin:.2f} deg" if np.isfinite(margin) else "any margin"
-        risk = f"{100 * self.worst.at_risk:.2g} % of starts at risk"
+        risk = f"{100 * self.worst.at_risk:.3g} % of starts at risk"
         return f"Robustness({self.status}: {lines}; final width {width:.2f} deg, {left}, {risk})"
 
 

@@ -22,7 +22,7 @@ from limitsurf.kernels.median_states import median_states
 from limitsurf.kernels.steepest_turn import steepest_turn
 from limitsurf.kernels.turn_roots import slope_signs
 from limitsurf.planning.median_pieces import MedianPiece, crossed_in_the_middle, median_pieces
-from limitsurf.planning.turn_certificate import TurnCertificate, sign_changes
+from limitsurf.planning.turn_certificate import TurnCertificate, changes_in_cells
 from limitsurf.sets.arguments import as_instance, as_number, as_numbers
 from limitsurf.tolerances import FLAT_MOMENT, NEUTRAL
 
@@ -132,7 +132,7 @@ class TurnFunction:
     def certificate(self) -> TurnCertificate:
         """Why the equilibria are all there are."""
         found = np.concatenate([self.stable, self.unstable])
-        cover = sign_changes(self.cells)
+        cover = changes_in_cells(self.cells)
         residual = float(np.abs(self._states(found)[:, 2]).max(initial=0.0))
         return TurnCertificate(len(found), cover.bound, cover.unresolved, cover.widest, residual)
 
@@ -200,7 +200,7 @@ def turn_function(part: Part, *, neutral_angle: float = NEUTRAL) -> TurnFunction
         raise InputError("neutral_angle", "must be at least 0 rad", value=neutral_angle)
     as_instance("part", part, Part, remedy="make one of the outline: Part(outline)")
     cells, _ = slope_signs(*_unit_part(part), _rounding(part))
-    found = sign_changes(cells)
+    found = changes_in_cells(cells)
     return TurnFunction(
         part, _orientations(found.rising), _orientations(found.falling), cells, neutral_angle
     )
