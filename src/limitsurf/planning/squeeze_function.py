@@ -13,10 +13,19 @@ from limitsurf.errors import InputError
 from limitsurf.sets.arguments import as_numbers
 from limitsurf.tolerances import ANGLE
 
-__all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
+__all__ = [
+    "LEAST_DIFFERENCE",
+    "SqueezeFunction",
+    "smallest_period",
+    "spread_of_copies",
+    "squeeze_function",
+]
 
 Array = NDArray[np.float64]
 
+#: Steps of a part that is symmetric are one if they differ by less than this times what its copies
+#: differ by: a plan must not rely on differences as small as the errors of the steps.
+LEAST_DIFFERENCE = 8.0
 _TRIPLE = 1e-4  # rad; triple roots of U', where two equilibria merge, are known to about 1e-5
 
 
@@ -126,7 +135,8 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     if rough < period:  # if the part is symmetric, the steps are, however well they are known
         order = turn.symmetry_order
         copies = math.gcd(round(np.pi / rough), order if order % 2 else order // 2)
-        period = min(period, np.pi / copies)
+        unsure = LEAST_DIFFERENCE * spread_of_copies(*steps, np.pi, copies)
+        period = smallest_period(*steps, np.pi, max(ANGLE, unsure))
     return SqueezeFunction(*steps, period)
 
 
@@ -142,11 +152,20 @@ def smallest_period(
     for copies in range(k, 1, -1):
         if k % copies:
             continue
-        shift, turn = k // copies, modulus / copies
-        same = all(
-            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= tolerance
-            for x in (breaks, ends, images)
-        )
-        if same:
-            return float(turn)
+        if spread_of_copies(breaks, ends, images, modulus, copies) <= tolerance:
+            return float(modulus / copies)
     return float(modulus)
+
+
+def spread_of_copies(
+    breaks: Array, ends: Array, images: Array, modulus: float, copies: int
+) -> float:
+    """Return how far the steps are from mapping onto one another under ``modulus / copies``.
+
+    `copies` divides their number.
+    """
+    shift, turn = len(breaks) // copies, modulus / copies
+    return max(
+        float(np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)))
+        for x in (breaks, ends, images)
+    )
