@@ -1,3 +1,5 @@
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import shapely
@@ -125,3 +127,22 @@ def test_symmetry_orders():
 def test_edges_are_read_only():
     with pytest.raises(ValueError, match="read-only"):
         Part(SQUARE).edges[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1e6, -3e5), (3.0, 1e8)])
+def test_edges_are_about_the_centroid_to_their_last_digit(place, rng):
+    """Against exact fractions: far from the origin the centroid itself has fewer digits."""
+    angle = np.sort(rng.uniform(0.0, 2 * np.pi, 9))
+    vertices = np.column_stack([np.cos(angle), 0.3 * np.sin(angle)]) + place
+    points = [tuple(Fraction(float(c)) for c in vertex) for vertex in vertices]
+    sums = [Fraction(0)] * 3
+    for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1], strict=True):
+        cross = x0 * y1 - x1 * y0
+        sums = [s + cross * t for s, t in zip(sums, (1, x0 + x1, y0 + y1), strict=True)]
+    exact = [
+        [float(c - s / (3 * sums[0])) for c, s in zip(p, sums[1:], strict=True)] for p in points
+    ]
+    found = Part(vertices).edges
+    assert not found.flags.writeable
+    apart = np.abs(found[:, None, :2] - np.array(exact)).max(axis=2)
+    assert apart.min(axis=1).max() < 1e-15

@@ -7,7 +7,9 @@ import shapely
 from limitsurf.errors import InputError, NoPlan
 from limitsurf.geometry.part import Part
 from limitsurf.planning.alignment import AlignmentPlan, plan_alignment
+from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.turn_function import turn_function
+from limitsurf.planning.verification import verify_alignment
 from tests.reference_cases import CASES, NAMES, angle_distance
 
 
@@ -173,3 +175,29 @@ def test_final_orientation_is_stable_relative_to_the_last_line():
             angle_distance([relative], [stable[np.argmin(np.abs(stable - relative))]], plan.period)
             < 1e-9
         )
+
+
+def test_a_plan_is_not_longer_for_rounding():
+    """Two plans have one margin, but for its last digit; the shorter one is reported."""
+    pieces = [shapely.box(0, 0, 1, 1), shapely.box(2, 1, 2.7, 3)]
+    turned = shapely.affinity.rotate(shapely.box(-1, 3, 0.3, 4), 20)
+    part = Part(shapely.MultiPolygon([*pieces, turned]))
+    with pytest.raises(NoPlan) as found:
+        plan_alignment(part, model="push-squeeze", min_margin=1.0)
+    best = found.value.plan
+    assert found.value.reachable_margin == best.least_margin
+    slack = best.least_margin * (1.0 - 1e-9)
+    assert len(best.lines) == len(
+        plan_alignment(part, model="push-squeeze", min_margin=slack).lines
+    )
+
+
+def test_differences_that_the_symmetry_denies_are_not_relied_on():
+    """A nonagon, three times symmetric to 1e-9, whose steps differ by 1e-7."""
+    angle = 0.3 + 2 * np.pi * np.arange(9) / 9
+    radius = 1.0 + 1.3464454409219474e-09 * np.random.default_rng(921).normal(size=9)
+    part = Part(radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
+    assert part.symmetry_order == 3
+    for model, ratio in (("squeeze", 0.0), ("centred", 1.0), ("push-squeeze", 1.0)):
+        plan = plan_alignment(part, model=model, mobility_ratio=ratio)
+        assert verify_alignment(plan, part, IdealSqueeze(ratio), 40, 0).rate == 1.0

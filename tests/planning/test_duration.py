@@ -80,3 +80,12 @@ def test_bad_input(plan, array64):
     idle = replace(array64, pixel=replace(array64.pixel, offset_fraction=0.0))
     with pytest.raises(InputError, match="does not push"):
         expected_duration(plan, idle)
+
+
+def test_steps_that_end_before_they_begin_have_no_starts(plan):
+    squeeze = plan.squeeze
+    ends = np.append(squeeze.breaks[0] - 0.01, squeeze.ends[1:])
+    swallowed = replace(plan, squeeze=replace(squeeze, ends=ends))
+    share = duration._first_starts(swallowed, None).share
+    assert share.min() >= 0.0
+    assert share.sum() == pytest.approx(1.0)

@@ -2,12 +2,13 @@
 
 import itertools
 import re
+from time import perf_counter
 
 import numpy as np
 import pytest
 from step_twins import all_sequences, ends_of, random_steps
 
-from limitsurf.errors import NoPlan, SolveFailed
+from limitsurf.errors import InputError, NoPlan, SolveFailed
 from limitsurf.geometry.part import Part
 from limitsurf.planning import given_lines
 from limitsurf.planning.alignment import plan_alignment
@@ -209,3 +210,25 @@ def test_one_step_needs_one_line():
     plan = plan_lines(random_steps(np.random.default_rng(0), 1), lines=[2.0, 0.3])
     assert len(plan.lines) == 1
     assert plan.least_margin == np.inf
+
+
+def test_many_lines_are_searched_or_refused():
+    squeeze = SqueezeFunction(
+        np.array([0.0, 1.0]), np.array([1.0, np.pi]), np.array([0.5, 2.0]), np.pi
+    )
+    begin = perf_counter()
+    plan = plan_lines(squeeze, lines=200)
+    assert perf_counter() - begin < 5.0  # 0.5 s
+    assert plan.least_margin <= plan_lines(squeeze).least_margin
+    for lines in (100_000, np.linspace(0.0, 3.0, 1001)):
+        with pytest.raises(InputError, match="round") as found:
+            plan_lines(squeeze, lines=lines)
+        assert found.value.argument == "lines"
+
+
+@pytest.mark.parametrize("k", [1, 7, 8, 9, 63, 64, 65, 130])
+def test_sets_of_steps_as_bits_and_back(k, rng):
+    rows = rng.random((5, k)) < 0.5
+    sets = given_lines._as_bits(rows)
+    assert sets == [sum(1 << int(i) for i in np.flatnonzero(row)) for row in rows]
+    assert np.array_equal(given_lines._as_rows(sets, k), rows)

@@ -1,10 +1,14 @@
 """Plans from bare step functions, with lines of any angle."""
 
+import math
+from time import perf_counter
+
 import numpy as np
 import pytest
 from step_twins import ends_of, naive_chain, random_steps, shortest_by_sets
 
 from limitsurf.errors import InputError, NoPlan
+from limitsurf.planning.free_lines import _room
 from limitsurf.planning.plan_lines import plan_lines
 from limitsurf.planning.squeeze_function import SqueezeFunction
 from limitsurf.tolerances import LINE_MARGIN
@@ -173,3 +177,35 @@ def test_bands_may_leave_no_plan():
         plan_lines(squeeze)
     assert caught.value.reachable_margin == 0.0
     assert caught.value.plan is None
+
+
+@pytest.mark.parametrize("off", [1e-8, 1e-7, 1e-4])
+def test_steps_that_nearly_repeat_are_planned_at_once(off):
+    breaks = np.array([0.3, 0.3 + np.pi / 2 + off])
+    ends = np.append(breaks[1:], breaks[0] + np.pi)
+    squeeze = SqueezeFunction(breaks, ends, 0.5 * (breaks + ends), np.pi)
+    begin = perf_counter()
+    plan = plan_lines(squeeze)
+    assert perf_counter() - begin < 1.0
+    assert len(plan.lines) == 2
+    assert plan.least_margin == pytest.approx(0.5 * off, rel=1e-6)
+
+
+def test_room_is_the_largest_float_that_leaves_the_gap(rng):
+    for _ in range(3000):
+        width = rng.uniform(0.0, 3.0) * 10.0 ** -rng.integers(0, 9)
+        gap = width - rng.choice([-1.0, 1.0]) * 10.0 ** -rng.uniform(0, 18)
+        gap = rng.choice([gap, rng.uniform(0.0, 3.0), width, math.nextafter(width, 0.0)])
+        if gap > 0.0:
+            room = _room(width, gap)
+            assert width - room >= gap
+            assert width - math.nextafter(room, math.inf) < gap
+
+
+def test_steps_that_all_but_repeat_are_said_to():
+    off = 1.8e-9  # more than steps that are one, less than the margins of a plan
+    breaks = np.array([0.3, 0.3 + np.pi / 2 + off])
+    ends = np.append(breaks[1:], breaks[0] + np.pi)
+    with pytest.raises(NoPlan, match="every 90 deg the steps repeat") as found:
+        plan_lines(SqueezeFunction(breaks, ends, 0.5 * (breaks + ends), np.pi))
+    assert found.value.reachable_margin == 0.0

@@ -5,7 +5,7 @@ import pytest
 
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.turn_roots import CLEAR, FLAT, MONOTONE, ROOT
-from limitsurf.planning.turn_certificate import sign_changes
+from limitsurf.planning.turn_certificate import changes_in_cells
 from limitsurf.planning.turn_function import turn_function
 from tests.reference_cases import CASES, NAMES
 
@@ -53,7 +53,7 @@ def cells(*rows):
 
 
 def test_roots_of_cells():
-    found = sign_changes(cells((1, CLEAR, -1), (1, ROOT, 1), (1, CLEAR, 1), (1, ROOT, -1)))
+    found = changes_in_cells(cells((1, CLEAR, -1), (1, ROOT, 1), (1, CLEAR, 1), (1, ROOT, -1)))
     assert found.rising == pytest.approx([3 * np.pi / 8])
     assert found.falling == pytest.approx([7 * np.pi / 8])
     assert (found.bound, found.unresolved) == (2, 0)
@@ -70,7 +70,7 @@ def test_runs_of_cells_with_unclear_borders(shift):
         (1, ROOT, -1),
         (1, CLEAR, -1),
     ]
-    found = sign_changes(cells(*rows[shift:], *rows[:shift]))
+    found = changes_in_cells(cells(*rows[shift:], *rows[:shift]))
     assert len(found.rising) == len(found.falling) == 1
     assert (found.bound, found.unresolved) == (2, 0)
 
@@ -78,18 +78,18 @@ def test_runs_of_cells_with_unclear_borders(shift):
 def test_a_touch_is_no_root():
     """Monotone cells between equal signs hold no root; flat ones are left to rounding."""
     clear = (1, CLEAR, 1)
-    found = sign_changes(cells(clear, (1, MONOTONE, 1), clear))
+    found = changes_in_cells(cells(clear, (1, MONOTONE, 1), clear))
     assert (found.bound, found.unresolved) == (0, 0)
-    found = sign_changes(cells(clear, (1, MONOTONE, -1), (1, MONOTONE, 1), clear))
+    found = changes_in_cells(cells(clear, (1, MONOTONE, -1), (1, MONOTONE, 1), clear))
     assert (found.bound, found.unresolved) == (0, 1)
-    found = sign_changes(cells(clear, (1, FLAT, 0), clear))
+    found = changes_in_cells(cells(clear, (1, FLAT, 0), clear))
     assert (found.bound, found.unresolved) == (0, 1)
-    found = sign_changes(cells(clear, (1e-11, FLAT, 0), clear))
+    found = changes_in_cells(cells(clear, (1e-11, FLAT, 0), clear))
     assert (found.bound, found.unresolved) == (0, 0)
 
 
 def test_nothing_but_rounding():
-    found = sign_changes(cells((1, FLAT, 0), (1, MONOTONE, 1)))
+    found = changes_in_cells(cells((1, FLAT, 0), (1, MONOTONE, 1)))
     assert len(found.rising) == len(found.falling) == 0
     assert found.unresolved == 1
     assert found.widest == np.pi

@@ -9,7 +9,7 @@ from shapely.validation import explain_validity
 
 from limitsurf.errors import InputError
 
-__all__ = ["as_polygon", "directed_edges", "ring_starts"]
+__all__ = ["area_centroid", "as_polygon", "directed_edges", "ring_starts"]
 
 _SMALLEST, _LARGEST = 1e-70, 1e70  # fourth powers are normal numbers
 
@@ -63,6 +63,14 @@ def directed_edges(shape: shapely.Geometry, origin: tuple[float, float]) -> NDAr
     stacked = np.ascontiguousarray(np.vstack(edges))
     stacked.setflags(write=False)
     return stacked
+
+
+def area_centroid(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the centroid (2,) of what lies on the left of edges (E, 4)."""
+    x0, y0, x1, y1 = edges.T
+    cross = x0 * y1 - x1 * y0
+    first = np.array([cross @ (x0 + x1), cross @ (y0 + y1)])
+    return np.asarray(first / (3.0 * cross.sum()))
 
 
 def ring_starts(edges: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.errors import InputError
 from limitsurf.geometry.outline_files import read_part_file
-from limitsurf.geometry.outlines import as_polygon, directed_edges
+from limitsurf.geometry.outlines import area_centroid, as_polygon, directed_edges
 from limitsurf.geometry.rotation_symmetry import rotation_order
 from limitsurf.sets.arguments import as_array
 from limitsurf.units import parse_quantity
@@ -126,7 +126,13 @@ class Part:
     @cached_property
     def edges(self) -> Array:
         """Directed edges (E, 4) ``x0, y0, x1, y1`` about the centroid, the part on their left."""
-        return directed_edges(self._polygon, self.centroid)
+        edges = directed_edges(self._polygon, self.centroid)
+        off = area_centroid(edges)
+        if np.abs(off).max() < 1e-15 * np.abs(edges).max():
+            return edges
+        about_centroid = edges - np.tile(off, 2)  # far from the origin `centroid` lacks digits
+        about_centroid.setflags(write=False)
+        return about_centroid
 
     @cached_property
     def unit_edges(self) -> Array:

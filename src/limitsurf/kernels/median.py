@@ -1,16 +1,14 @@
-r"""The median of a polygon and the energy of a squeeze field, from line integrals over its edges.
+r"""The median of a polygon and the energy of a squeeze field there, from integrals over its edges.
 
 With :math:`u = (\cos\theta, \sin\theta)`, :math:`n = (-\sin\theta, \cos\theta)`,
 :math:`s = u\cdot x`, :math:`t = n\cdot x` and the region kept on the left of its edges, Green's
 theorem gives
 
-.. math::
-    A_{left}(z) &= \int_{t>z} dA = -\oint (t-z)^+ ds \\
-    U(z,\theta) &= \int |t-z|\, dA = -\tfrac12 \oint (t-z)|t-z|\, ds \\
-    U_\theta(z,\theta) &= -\int \mathrm{sgn}(t-z)\, s\, dA = \oint |t-z|\, s\, ds
+.. math:: A_{left}(z) = \int_{t>z} dA = -\oint (t-z)^+ ds
 
-Holes and several pieces need nothing special. The chords of the line enter through their end
-points only: an edge that crosses upwards is a right end, one that crosses downwards a left end.
+and the sums of `squeeze_energy`. Holes and several pieces need nothing special. The chords of the
+line enter through their end points only: an edge that crosses upwards is a right end, one that
+crosses downwards a left end.
 Reference: Boehringer et al. 1994, section 3 (conditions I and II); potential and
 ``U'' + U = 2 J`` as derived in ``docs/planning.md``.
 """
@@ -20,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
+from limitsurf.kernels.squeeze_energy import squeeze_energy
 
 __all__ = ["area_left", "median_offset", "squeeze_states"]
 
@@ -83,45 +82,13 @@ def median_offset(edges: Floats, theta: float, half_area: float) -> float:
 
 
 @compiled
-def _squeeze_state(edges: Floats, theta: float, half_area: float, out: Floats) -> None:
-    z = median_offset(edges, theta, half_area)
-    cos, sin = np.cos(theta), np.sin(theta)
-    energy = 0.0
-    slope = 0.0
-    length = 0.0
-    first = 0.0
-    second = 0.0
-    for i in range(edges.shape[0]):
-        s0 = cos * edges[i, 0] + sin * edges[i, 1]
-        s1 = cos * edges[i, 2] + sin * edges[i, 3]
-        t0 = cos * edges[i, 1] - sin * edges[i, 0] - z
-        t1 = cos * edges[i, 3] - sin * edges[i, 2] - z
-        if (t0 > 0.0) != (t1 > 0.0):
-            crossing = s0 + (s1 - s0) * (t0 / (t0 - t1))
-            sign = 1.0 if t1 > t0 else -1.0
-            length += sign * crossing
-            first += sign * crossing * crossing / 2
-            second += sign * crossing**3 / 3
-            energy -= (t0 * abs(t0) * (crossing - s0) + t1 * abs(t1) * (s1 - crossing)) / 6
-            slope += abs(t0) * (crossing - s0) * (2 * s0 + crossing) / 6
-            slope += abs(t1) * (s1 - crossing) * (2 * s1 + crossing) / 6
-        else:
-            run = s1 - s0
-            sign = 1.0 if t0 + t1 > 0.0 else -1.0
-            energy -= sign * run * (t0 * t0 + t0 * t1 + t1 * t1) / 6
-            slope += sign * run * (2 * t0 * s0 + 2 * t1 * s1 + t0 * s1 + t1 * s0) / 6
-    out[0] = z
-    out[1] = energy
-    out[2] = slope
-    out[3] = second - first * first / length if length > 0.0 else 0.0
-    out[4] = length
-    out[5] = first / length if length > 0.0 else 0.0
-
-
-@compiled
 def squeeze_states(edges: Floats, theta: Floats, half_area: float) -> Floats:
     """Return rows ``(z, U, U', J, chord length, s_m)`` at the medians of directions `theta`."""
     out = np.empty((theta.shape[0], 6))
     for k in range(theta.shape[0]):
-        _squeeze_state(edges, theta[k], half_area, out[k])
+        z = median_offset(edges, theta[k], half_area)
+        energy, _, slope, c0, c1, c2 = squeeze_energy(edges, 2.0 * half_area, z, theta[k])
+        out[k, 0], out[k, 1], out[k, 2], out[k, 4] = z, energy, slope, c0
+        out[k, 3] = c2 - c1 * c1 / c0 if c0 > 0.0 else 0.0
+        out[k, 5] = c1 / c0 if c0 > 0.0 else 0.0
     return out

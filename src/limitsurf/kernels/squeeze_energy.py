@@ -19,7 +19,7 @@ import numpy as np
 
 from limitsurf.kernels.compile import Floats, compiled
 
-__all__ = ["Energy", "squeeze_energy"]
+__all__ = ["Energy", "squeeze_energy", "squeeze_loads"]
 
 #: U, U_z, U_theta, c_0, c_1, c_2.
 Energy = tuple[float, float, float, float, float, float]
@@ -57,3 +57,12 @@ def squeeze_energy(edges: Floats, area: float, z: float, theta: float) -> Energy
     if left and right:
         return U, force, moment, c0, c1, c2
     return area * abs(z), -area if left else area, 0.0, 0.0, 0.0, 0.0
+
+
+@compiled
+def squeeze_loads(edges: Floats, area: float, theta: Floats, z: Floats) -> Floats:
+    """Return rows ``(U_z, U_theta)``: force along n and moment on the part, for unit push."""
+    out = np.empty((theta.shape[0], 2))
+    for k in range(theta.shape[0]):
+        _, out[k, 0], out[k, 1], _, _, _ = squeeze_energy(edges, area, z[k], theta[k])
+    return out

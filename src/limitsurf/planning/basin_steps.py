@@ -24,8 +24,14 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.squeeze_flow import MOVING
 from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.separatrices import Separatrix, separatrices
-from limitsurf.planning.squeeze_function import SqueezeFunction, smallest_period, squeeze_function
+from limitsurf.planning.squeeze_function import (
+    LEAST_DIFFERENCE,
+    SqueezeFunction,
+    smallest_period,
+    squeeze_function,
+)
 from limitsurf.planning.turn_function import turn_function
+from limitsurf.tolerances import ANGLE
 
 __all__ = ["centred_squeeze_function", "shift_squeeze_function", "unknown_offset_function"]
 
@@ -181,19 +187,22 @@ def _in_order(steps: Array, modulus: float, part: Part) -> SqueezeFunction:
     steps = steps[np.lexsort((steps[:, 2], steps[:, 0]))]
     order = part.symmetry_order
     copies = order // 2 if modulus == np.pi and order % 2 == 0 else order
-    breaks, ends, images = np.ascontiguousarray(_symmetric(steps, modulus, copies).T)
-    period = smallest_period(breaks, ends, images, modulus)
+    steps, spread = _symmetric(steps, modulus, copies)
+    breaks, ends, images = np.ascontiguousarray(steps.T)
+    unsure = LEAST_DIFFERENCE * spread
+    period = smallest_period(breaks, ends, images, modulus, max(ANGLE, unsure))
     return SqueezeFunction(breaks, ends, images, period, modulus)
 
 
-def _symmetric(steps: Array, modulus: float, copies: int) -> Array:
-    """Return steps that repeat exactly, `copies` times, as the part's symmetry wants it."""
+def _symmetric(steps: Array, modulus: float, copies: int) -> tuple[Array, float]:
+    """Return steps that repeat exactly, `copies` times, and how far they were from doing so."""
     turns = modulus / copies * np.arange(copies)[:, None, None]
     whole = len(steps) % copies == 0
     base = steps.reshape(copies, -1, 3) - turns if whole else steps[None]
-    if not whole or np.ptp(base, axis=0).max() > _SYMMETRIC:
+    spread = float(np.ptp(base, axis=0).max())
+    if not whole or spread > _SYMMETRIC:
         raise SolveFailed(
             f"the borders of the basins are not {copies} times symmetric, as the part is: they "
             "hang on rounding; use a smaller mobility_ratio"
         )
-    return np.asarray((base.mean(axis=0) + turns).reshape(-1, 3))
+    return np.asarray((base.mean(axis=0) + turns).reshape(-1, 3)), spread

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.geometry.part import Part
 from limitsurf.planning.calipers import Calipers
+from limitsurf.sets.arguments import as_instance, as_number, as_numbers
 from limitsurf.tolerances import ANGLE, NEUTRAL
 
 __all__ = ["DiameterFunction", "DiameterPiece", "diameter_function"]
@@ -78,7 +79,7 @@ class DiameterFunction:
 
     def __call__(self, phi: ArrayLike) -> NDArray[np.int64]:
         """Return 1 where the part turns counter-clockwise, -1 clockwise, 0 in equilibrium."""
-        orientation = np.asarray(phi, dtype=np.float64)
+        orientation = as_numbers("phi", phi)
         if self.neutral:
             return np.zeros(orientation.shape, dtype=np.int64)
         off = np.subtract.outer(orientation, np.concatenate([self.stable, self.unstable]))
@@ -99,7 +100,7 @@ class DiameterFunction:
 
     def _across(self, phi: ArrayLike) -> tuple[Array, Array]:
         """Return w and w'."""
-        theta = -np.asarray(phi, dtype=np.float64)
+        theta = -as_numbers("phi", phi)
         upper, lower = self.calipers.touched(theta)
         return _width(theta, upper - lower)
 
@@ -109,7 +110,7 @@ class DiameterFunction:
         The offset counts along ``n = (-sin theta, cos theta)``, theta = -phi; the chords are in the
         frame of the outline.
         """
-        theta = np.asarray(-float(phi))
+        theta = -as_numbers("phi", as_number("phi", phi))
         along = np.array([np.cos(theta), np.sin(theta)])
         across = np.array([-along[1], along[0]])
         upper, lower = self.calipers.touched(theta)
@@ -172,6 +173,7 @@ def diameter_function(part: Part) -> DiameterFunction:
     >>> diameter.stable.round(6), diameter.potential([0.0, 1.5707963267948966])
     (array([0.      , 1.570796]), array([1., 2.]))
     """
+    as_instance("part", part, Part, remedy="make one of the outline: Part(outline)")
     calipers = Calipers.around(part)
     breaks = _flush(calipers)
     widths, slopes = _piece_ends(calipers, breaks)

@@ -15,7 +15,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.motion.drag import air_film_drag
 from limitsurf.planning.settling import settle
 from limitsurf.planning.turn_function import turn_function
-from limitsurf.sets.arguments import as_positive
+from limitsurf.sets.arguments import as_number, as_positive
 
 if TYPE_CHECKING:
     from limitsurf.planning.alignment import AlignmentPlan
@@ -137,7 +137,7 @@ def _first_starts(plan: AlignmentPlan, start_offset: float | None) -> _Starts:
     squeeze, line = plan.squeeze, float(plan.lines[0])
     count = max(3, -(-_ORIENTATIONS // len(squeeze.breaks)))
     angle = np.pi * (np.arange(count) + 0.5) / count
-    width = (squeeze.ends - squeeze.breaks)[:, None]
+    width = np.maximum(squeeze.ends - squeeze.breaks, 0.0)[:, None]  # swallowed steps: no starts
     phi = (squeeze.breaks[:, None] + width * 0.5 * (1.0 - np.cos(angle))).ravel()
     share = (width * np.sin(angle)).ravel()
     radius = _radius(plan.part, start_offset)
@@ -172,9 +172,10 @@ def _offsets(plan: AlignmentPlan, phi: Array, offset: Array) -> Array:
 def _radius(part: Part, start_offset: float | None) -> float:
     if start_offset is None:
         return 0.5 * part.circumradius
-    if not (np.isfinite(start_offset) and start_offset >= 0.0):
+    radius = as_number("start_offset", start_offset)
+    if not (np.isfinite(radius) and radius >= 0.0):
         raise InputError("start_offset", "must be at least 0 m", value=start_offset)
-    return float(start_offset)
+    return radius
 
 
 def _axes(line: float) -> tuple[Array, Array]:

@@ -19,6 +19,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.planning.many_starts import stationary_poses
 from limitsurf.planning.reduced_potential import ReducedPotential
 from limitsurf.planning.sign_changes import sign_changes
+from limitsurf.sets.arguments import as_instance
 
 __all__ = ["Equilibria", "equilibria"]
 
@@ -122,6 +123,11 @@ def equilibria(part: Part, field: LoadField) -> Equilibria:
     (Equilibria(2 stable, 2 saddles, along a line), array([[0.        , 0.        , 0.        ],
            [0.        , 0.        , 3.14159265]]))
     """
+    as_instance("part", part, Part, remedy="make one of the outline: Part(outline)")
+    if not hasattr(field, "load"):
+        raise InputError(
+            "field", "is no force field", value=field, remedy="such as DensityField.squeeze(0, 1)"
+        )
     if not getattr(field, "has_potential", True):
         raise InputError(
             "field",

@@ -15,6 +15,7 @@ there may be shorter ones.
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,12 +25,15 @@ from limitsurf.errors import NoPlan
 from limitsurf.kernels.step_runs import widest_run
 from limitsurf.planning.largest_margin import with_largest_gap
 from limitsurf.planning.line_plan import LinePlan
-from limitsurf.planning.squeeze_function import SqueezeFunction
+from limitsurf.planning.squeeze_function import SqueezeFunction, smallest_period
 from limitsurf.tolerances import LINE_MARGIN
 
 __all__ = ["plan_free_lines"]
 
 Array = NDArray[np.float64]
+
+_ROUNDING = 1e-12  # for this much of the largest margin no plan is made longer
+_NEARLY = 1e-8  # rad; steps that repeat to within this leave hardly a margin
 
 
 @dataclass(frozen=True)
@@ -123,12 +127,16 @@ def _backwards(steps: _Steps, gap: float, most: float = np.inf) -> tuple[Chain, 
 
 
 def _room(width: float, gap: float) -> float:
-    """Return the largest float that subtracted from `width` leaves at least `gap`."""
-    room = width - gap
+    """Return the largest float that subtracted from `width` leaves at least `gap`.
+
+    Differences from half an ulp below the gap on are rounded to it. Where the gap is nearly the
+    width, many floats lie within that half ulp.
+    """
+    room = width - gap + 0.5 * (gap - math.nextafter(gap, -math.inf))
     while width - room < gap:
-        room = float(np.nextafter(room, -np.inf))
-    while width - np.nextafter(room, np.inf) >= gap:
-        room = float(np.nextafter(room, np.inf))
+        room = math.nextafter(room, -math.inf)
+    while width - math.nextafter(room, math.inf) >= gap:
+        room = math.nextafter(room, math.inf)
     return room
 
 
@@ -159,24 +167,37 @@ def _no_plan(
     steps: _Steps, squeeze: SqueezeFunction, min_margin: float, goal: float | None
 ) -> NoPlan:
     """Return the error that says which margin is reachable, with the plan that attains it."""
-    chain, _ = _shortest_chain(steps, 2.0 * LINE_MARGIN)
-    if chain is None:
-        widest = _backwards(steps, 2.0 * LINE_MARGIN)[0][-1].width
-        reason = (
-            "no plan: the widest arc of orientations that lines surely take to one has "
-            f"{np.degrees(widest):.6g} of {np.degrees(steps.period):.6g} deg"
-        )
-        if np.any(steps.breaks[1:] > steps.ends[:-1]):
-            reason += (
-                "; from the gaps between steps either of two images may come: centre the part "
-                "first (model 'centred'), or push it from one side ('push-squeeze')"
-            )
-        return NoPlan(reason, 0.0)
-    plan = _forward(_widen(chain, steps), squeeze, goal)
+    any_margin, _ = _shortest_chain(steps, 2.0 * LINE_MARGIN)
+    if any_margin is None:
+        return NoPlan(_why_none(steps, squeeze), 0.0)
+    widest = _widen(any_margin, steps)
+    shorter, _ = _shortest_chain(steps, _gap(widest) * (1.0 - _ROUNDING))
+    plan = _forward(min(widest, shorter or widest, key=len), squeeze, goal)
     return NoPlan(
-        f"min_margin: no plan has a margin of {np.degrees(min_margin):.4g} deg; at most "
-        f"{np.degrees(plan.least_margin):.4g} deg is reachable, by {len(plan.lines)} lines "
+        f"min_margin: no plan has a margin of {np.degrees(min_margin):.6g} deg; at most "
+        f"{np.degrees(plan.least_margin):.6g} deg is reachable, by {len(plan.lines)} lines "
         "(the error's `plan`)",
         plan.least_margin,
         plan,
     )
+
+
+def _why_none(steps: _Steps, squeeze: SqueezeFunction) -> str:
+    reach = _backwards(steps, 2.0 * LINE_MARGIN)[0][-1].width
+    reason = (
+        "no plan: the widest arc of orientations that lines surely take to one has "
+        f"{np.degrees(reach):.6g} of {np.degrees(steps.period):.6g} deg"
+    )
+    rows = squeeze.breaks, squeeze.ends, squeeze.images
+    nearly = smallest_period(*rows, squeeze.modulus, _NEARLY)
+    if nearly < steps.period:
+        reason += (
+            f"; every {np.degrees(nearly):.4g} deg the steps repeat, to within {_NEARLY:g} rad: no "
+            "line can be as accurate as to tell such orientations apart"
+        )
+    if np.any(steps.breaks[1:] > steps.ends[:-1]):
+        reason += (
+            "; from the gaps between steps either of two images may come: centre the part "
+            "first (model 'centred'), or push it from one side ('push-squeeze')"
+        )
+    return reason

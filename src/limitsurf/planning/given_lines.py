@@ -115,12 +115,9 @@ class _Search:
         may_come = near.astype(np.float32)
         outside = ~_as_rows(sets, k)
         astray = np.matmul(outside.astype(np.float32), may_come.transpose(0, 2, 1))  # (a, set, i)
-        return [
-            ((a, bits), (b, sets[n]))
-            for a, rows in enumerate(astray == 0.0)
-            for n, bits in enumerate(_as_bits(rows))
-            if bits
-        ]
+        codes = _as_bits((astray == 0.0).reshape(-1, k))
+        pairs = itertools.product(range(len(distances)), [(b, bits) for bits in sets])
+        return [((a, bits), late) for bits, (a, late) in zip(codes, pairs, strict=True) if bits]
 
     def step_back(self, front: Chain) -> Chain:
         """Return the new sets from which some line leads surely into one of these."""
@@ -217,4 +214,8 @@ def _as_rows(sets: list[int], k: int) -> Bools:
 
 def _as_bits(rows: Bools) -> list[int]:
     packed = np.packbits(rows, axis=1, bitorder="little")
+    if packed.shape[1] <= 8:
+        words = np.zeros((len(packed), 8), dtype=np.uint8)
+        words[:, : packed.shape[1]] = packed
+        return list(words.view("<u8").ravel().tolist())
     return [int.from_bytes(row.tobytes(), "little") for row in packed]

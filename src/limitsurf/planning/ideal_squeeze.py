@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.geometry.part import Part
 from limitsurf.kernels.squeeze_flow import MOVING, flow_trace, settle
-from limitsurf.sets.arguments import as_number, writable
+from limitsurf.sets.arguments import as_number, as_numbers, writable
 
-__all__ = ["IdealSqueeze", "SqueezePath", "as_mobility_ratio", "turning_mobility"]
+__all__ = ["STEP_ERROR", "IdealSqueeze", "SqueezePath", "as_mobility_ratio", "turning_mobility"]
 
 Array = NDArray[np.float64]
 
-_STEP_ERROR = 1e-8
+STEP_ERROR = 1e-8  # of each step, in lengths and angles; it blurs the borders of the basins
 
 _LEAST_RATIO, _LARGEST_RATIO = 1e-6, 1e6
 
@@ -109,7 +109,7 @@ class IdealSqueeze:
         return z, angle
 
     def settle(
-        self, part: Part, offset: ArrayLike, phi: ArrayLike, step_error: float = _STEP_ERROR
+        self, part: Part, offset: ArrayLike, phi: ArrayLike, step_error: float = STEP_ERROR
     ) -> tuple[Array, Array, NDArray[np.int32]]:
         """Return what `rest` does, and how each motion ended, without an error.
 
@@ -117,11 +117,12 @@ class IdealSqueeze:
         `step_error` [rad], for lengths relative to the side of a square of the part's area, blurs
         the borders of the basins; where a motion ends is exact.
         """
-        z, angle = np.broadcast_arrays(
-            np.asarray(offset, dtype=np.float64), np.asarray(phi, dtype=np.float64)
-        )
-        if not (np.isfinite(z).all() and np.isfinite(angle).all()):
-            raise InputError("offset, phi", "have entries that are not finite")
+        z, angle = as_numbers("offset", offset), as_numbers("phi", phi)
+        try:
+            z, angle = np.broadcast_arrays(z, angle)
+        except ValueError as error:
+            problem = f"have shapes {z.shape} and {angle.shape}, which do not fit"
+            raise InputError("offset, phi", problem) from error
         unit = part.area**0.5
         starts = np.column_stack([z.ravel() / unit, -angle.ravel()])
         edges, kappa = writable(part.unit_edges), turning_mobility(part, self.mobility_ratio)
@@ -142,7 +143,7 @@ class IdealSqueeze:
         if not np.isfinite(start).all():
             raise InputError("offset, phi", "must be finite")
         edges, kappa = writable(part.unit_edges), turning_mobility(part, self.mobility_ratio)
-        rows, status = flow_trace(edges, kappa, 1.0, start, _STEP_ERROR)
+        rows, status = flow_trace(edges, kappa, 1.0, start, STEP_ERROR)
         path = SqueezePath(unit * rows[:, 0], unit * rows[:, 1], -rows[:, 2])
         if status == MOVING:
             raise SolveFailed("the motion did not come to rest", path)

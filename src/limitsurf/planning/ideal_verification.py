@@ -12,13 +12,16 @@ from limitsurf.geometry.part import Part
 from limitsurf.kernels.squeeze_flow import MOVING
 from limitsurf.motion.trajectory import Outcome
 from limitsurf.planning.alignment import AlignmentPlan
-from limitsurf.planning.ideal_squeeze import IdealSqueeze, SqueezePath
+from limitsurf.planning.ideal_squeeze import STEP_ERROR, IdealSqueeze, SqueezePath
 from limitsurf.planning.verification_record import Verification
 from limitsurf.sets.arguments import as_number
 
 __all__ = ["IdealVerification", "verify_in_ideal_field"]
 
 Array = NDArray[np.float64]
+
+_SHARE = 1e-3  # of the least margin: errors of steps must not carry a part over a border
+_LEAST_STEP_ERROR = 1e-13
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -59,6 +62,7 @@ def verify_in_ideal_field(
     rng = np.random.default_rng(seed)
     turns, places = rng.random(samples), rng.random((samples, len(plan.lines)))
     angle = 2 * np.pi * turns
+    step_error = min(STEP_ERROR, max(_SHARE * plan.least_margin, _LEAST_STEP_ERROR))
     poses: list[Array] = []
     offsets: list[Array] = []
     outcomes: list[NDArray[np.int64]] = []
@@ -66,7 +70,7 @@ def verify_in_ideal_field(
         z = _start_offsets(plan, part, angle - line, place, start_offset)
         if not poses:
             poses.append(_poses(z, angle, line))
-        rest, turned, status = drive.settle(part, z, angle - line)
+        rest, turned, status = drive.settle(part, z, angle - line, step_error)
         angle = turned + line
         offsets.append(z)
         poses.append(_poses(rest, angle, line))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.planning.squeeze_function import SqueezeFunction
+from limitsurf.sets.arguments import as_numbers
 
 __all__ = ["LinePlan"]
 
@@ -42,7 +43,7 @@ class LinePlan:
 
     def predict(self, phi: ArrayLike) -> Array:
         """Return the orientation, reduced, where the plan leaves a part that starts at phi."""
-        orientation = np.asarray(phi, dtype=np.float64)
+        orientation = as_numbers("phi", phi)
         for line in self.lines:
             orientation = self.squeeze(orientation - line) + line
         return np.mod(orientation, self.squeeze.modulus)

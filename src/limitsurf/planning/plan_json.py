@@ -77,7 +77,7 @@ def read_plan(text: str | Path) -> PlanFields:
     try:
         content = text.read_text(encoding="utf-8") if isinstance(text, Path) else text
         record = json.loads(content)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError) as error:
         raise ModelError(source, "", f"is no alignment plan: {error}") from error
     fields = _Fields(source, "", record)
     _check_format(fields)

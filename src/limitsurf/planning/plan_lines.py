@@ -19,6 +19,8 @@ __all__ = ["plan_lines"]
 
 Array = NDArray[np.float64]
 
+_MOST_STARTS = 2000  # lines times steps; a search looks at their pairs, some seconds
+
 
 def plan_lines(
     squeeze: SqueezeFunction,
@@ -78,24 +80,36 @@ def plan_lines(
 
 def _given_lines(squeeze: SqueezeFunction, lines: ArrayLike | int) -> GivenLines:
     """Check a set of lines."""
-    modulus = squeeze.modulus
     if np.ndim(lines) == 0:
-        n = as_count("lines", lines)
-        return GivenLines(squeeze, np.linspace(0.0, modulus, n, endpoint=False))
-    angles = np.mod(as_array("lines", lines, None), modulus)
+        count = _not_too_many(squeeze, as_count("lines", lines))
+        return GivenLines(squeeze, np.linspace(0.0, squeeze.modulus, count, endpoint=False))
+    angles = np.mod(as_array("lines", lines, None), squeeze.modulus)
+    _not_too_many(squeeze, len(angles))
     if len(angles) == 0:
         raise InputError("lines", "are none", remedy="give at least one angle")
     order = np.argsort(angles)
-    gaps = np.diff(angles[order], append=angles[order[0]] + modulus)
+    gaps = np.diff(angles[order], append=angles[order[0]] + squeeze.modulus)
     if len(angles) > 1 and gaps.min() <= ANGLE:
         n = int(np.argmin(gaps))
-        same = sorted((int(order[n]), int(order[(n + 1) % len(order)])))
+        i, j = sorted((int(order[n]), int(order[(n + 1) % len(order)])))
         raise InputError(
             "lines",
-            f"numbers {same[0]} and {same[1]} are one line, modulo {np.degrees(modulus):g} deg",
+            f"numbers {i} and {j} are one line, modulo {np.degrees(squeeze.modulus):g} deg",
             remedy="give each once",
         )
     return GivenLines(squeeze, angles)
+
+
+def _not_too_many(squeeze: SqueezeFunction, count: int) -> int:
+    most = max(1, _MOST_STARTS // max(1, squeeze.steps))
+    if count > most:
+        raise InputError(
+            "lines",
+            f"are {count}; at most {most} can be searched for {squeeze.steps} steps",
+            remedy="leave `lines` out and round what is found: a grid finer than the least margin "
+            "is safe",
+        )
+    return count
 
 
 def _plan_given_lines(given: GivenLines, min_margin: float, goal: float | None) -> LinePlan:

@@ -103,7 +103,7 @@ class Robustness:
         )
         width, margin = np.degrees(self.final_width), np.degrees(self.least_margin)
         left = f"margin {margin:.2f} deg" if np.isfinite(margin) else "any margin"
-        risk = f"{100 * self.worst.at_risk:.2g} % of starts at risk"
+        risk = f"{100 * self.worst.at_risk:.3g} % of starts at risk"
         return f"Robustness({self.status}: {lines}; final width {width:.2f} deg, {left}, {risk})"
 
 
@@ -214,6 +214,8 @@ def robustness(
 
 def _given(errors: FieldErrors | Sequence[FieldErrors], lines: int) -> Iterator[FieldErrors]:
     """Yield errors that a user gave, one for each line."""
+    if not isinstance(errors, FieldErrors | Sequence):
+        raise InputError("array", "is no ActuatorArray and no FieldErrors", value=errors)
     each = [errors] * lines if isinstance(errors, FieldErrors) else list(errors)
     if len(each) != lines:
         raise InputError("array", f"holds errors of {len(each)} lines; the plan has {lines}")

@@ -230,7 +230,10 @@ def _branch(part: Part, ratio: float, z: float, theta: float, way: float) -> Arr
 def _trace(edges: Array, kappa: float, start: Array, error: float) -> Array:
     rows, status = flow_trace(edges, kappa, -1.0, start, error)
     if status != STABLE:
-        raise SolveFailed(f"the separatrix of {np.degrees(-start[1]):.4g} deg ends nowhere")
+        raise SolveFailed(
+            f"the separatrix of {np.degrees(-start[1]):.4g} deg ends nowhere; "
+            "use a smaller mobility_ratio, or the model 'squeeze'"
+        )
     return np.asarray(rows)
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from limitsurf.errors import SolveFailed
-from limitsurf.kernels.squeeze_load import squeeze_loads
+from limitsurf.kernels.squeeze_energy import squeeze_loads
 from limitsurf.planning.turn_function import TurnFunction
 from limitsurf.sets.arguments import writable
 

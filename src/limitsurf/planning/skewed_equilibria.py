@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from limitsurf.errors import InputError
 from limitsurf.planning.sign_changes import sign_changes
 from limitsurf.planning.turn_function import TurnFunction
-from limitsurf.sets.arguments import as_number
+from limitsurf.sets.arguments import as_instance, as_number
 
 __all__ = ["SkewedEquilibria", "skewed_equilibria"]
 
@@ -70,6 +70,7 @@ def skewed_equilibria(turn: TurnFunction, skew: float) -> SkewedEquilibria:
     >>> len(skewed_equilibria(turn, 0.7).stable)
     0
     """
+    as_instance("turn", turn, TurnFunction, remedy="give turn_function(part)")
     angle = as_number("skew", skew)
     if not abs(angle) < 0.5 * np.pi:
         raise InputError("skew", "must lie between -pi/2 and pi/2", value=skew)

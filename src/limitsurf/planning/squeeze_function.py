@@ -9,12 +9,23 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from limitsurf.errors import InputError
+from limitsurf.sets.arguments import as_numbers
 from limitsurf.tolerances import ANGLE
 
-__all__ = ["SqueezeFunction", "smallest_period", "squeeze_function"]
+__all__ = [
+    "LEAST_DIFFERENCE",
+    "SqueezeFunction",
+    "smallest_period",
+    "spread_of_copies",
+    "squeeze_function",
+]
 
 Array = NDArray[np.float64]
 
+#: Steps of a part that is symmetric are one if they differ by less than this times what its copies
+#: differ by: a plan must not rely on differences as small as the errors of the steps.
+LEAST_DIFFERENCE = 8.0
 _TRIPLE = 1e-4  # rad; triple roots of U', where two equilibria merge, are known to about 1e-5
 
 
@@ -59,7 +70,7 @@ class SqueezeFunction:
 
     def follow(self, phi: ArrayLike) -> Array:
         """Return the orientation after a squeeze, not reduced: phi and how far the part turns."""
-        start = np.asarray(phi, dtype=np.float64)
+        start = as_numbers("phi", phi)
         if len(self.breaks) == 0:
             return start
         turns = self.modulus * np.floor((start - self.breaks[0]) / self.modulus)
@@ -101,7 +112,7 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     Parameters
     ----------
     turn : TurnFunction or DiameterFunction
-        From `turn_function` or `diameter_function`.
+        From `turn_function` or `diameter_function`; anything else is an InputError.
 
     Examples
     --------
@@ -110,6 +121,10 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     >>> squeeze_function(turn_function(Part([(0, 0), (2, 0), (2, 1), (0, 1)])))
     SqueezeFunction([90.00, 270.00) -> 180.00; period 180 deg)
     """
+    if not hasattr(turn, "unstable"):
+        raise InputError(
+            "turn", "is no turn function", value=turn, remedy="give turn_function(part)"
+        )
     if turn.neutral:
         return SqueezeFunction(np.empty(0), np.empty(0), np.empty(0), np.pi)
     before_first = turn.stable < turn.unstable[0]
@@ -120,7 +135,8 @@ def squeeze_function(turn: EquilibriaOfSqueeze) -> SqueezeFunction:
     if rough < period:  # if the part is symmetric, the steps are, however well they are known
         order = turn.symmetry_order
         copies = math.gcd(round(np.pi / rough), order if order % 2 else order // 2)
-        period = min(period, np.pi / copies)
+        unsure = LEAST_DIFFERENCE * spread_of_copies(*steps, np.pi, copies)
+        period = smallest_period(*steps, np.pi, max(ANGLE, unsure))
     return SqueezeFunction(*steps, period)
 
 
@@ -136,11 +152,20 @@ def smallest_period(
     for copies in range(k, 1, -1):
         if k % copies:
             continue
-        shift, turn = k // copies, modulus / copies
-        same = all(
-            np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)) <= tolerance
-            for x in (breaks, ends, images)
-        )
-        if same:
-            return float(turn)
+        if spread_of_copies(breaks, ends, images, modulus, copies) <= tolerance:
+            return float(modulus / copies)
     return float(modulus)
+
+
+def spread_of_copies(
+    breaks: Array, ends: Array, images: Array, modulus: float, copies: int
+) -> float:
+    """Return how far the steps are from mapping onto one another under ``modulus / copies``.
+
+    `copies` divides their number.
+    """
+    shift, turn = len(breaks) // copies, modulus / copies
+    return max(
+        float(np.max(np.abs(np.append(x[shift:], x[:shift] + modulus) - x - turn)))
+        for x in (breaks, ends, images)
+    )

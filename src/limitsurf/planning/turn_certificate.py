@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from limitsurf.kernels.turn_roots import CLEAR, MONOTONE, ROOT
 from limitsurf.tolerances import ANGLE
 
-__all__ = ["SignChanges", "TurnCertificate", "sign_changes"]
+__all__ = ["CellChanges", "TurnCertificate", "changes_in_cells"]
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class TurnCertificate:
 
 
 @dataclass(frozen=True)
-class SignChanges:
+class CellChanges:
     """Directions in which U' rises and falls through zero, and how sure that is.
 
     The other numbers are those of `TurnCertificate`.
@@ -74,7 +74,7 @@ class SignChanges:
     widest: float
 
 
-def sign_changes(cells: Array) -> SignChanges:
+def changes_in_cells(cells: Array) -> CellChanges:
     """Return the sign changes of U' from the rows of `limitsurf.kernels.turn_roots.slope_signs`.
 
     Neighbouring cells whose common border is rounding form a run. If U' rises in all of its cells,
@@ -82,7 +82,7 @@ def sign_changes(cells: Array) -> SignChanges:
     """
     sure = np.flatnonzero(cells[:, 2] <= ROOT)
     if len(sure) == 0:
-        return SignChanges(np.empty(0), np.empty(0), 0, 1, np.pi)
+        return CellChanges(np.empty(0), np.empty(0), 0, 1, np.pi)
     turn = np.array([np.pi, np.pi, 0.0, 0.0, np.pi, 0.0])
     around = np.concatenate([cells[sure[0] :], cells[: sure[0] + 1] + turn])
     roots: tuple[list[float], list[float]] = [], []
@@ -106,7 +106,7 @@ def sign_changes(cells: Array) -> SignChanges:
         if kind == ROOT and row[0] < around[0, 0] + np.pi - 1e-12:
             roots[after < 0.0].append(row[4])
             bound += 1
-    return SignChanges(np.array(roots[0]), np.array(roots[1]), bound, unresolved, widest)
+    return CellChanges(np.array(roots[0]), np.array(roots[1]), bound, unresolved, widest)
 
 
 def _is_monotone(run: list[_Row]) -> bool:

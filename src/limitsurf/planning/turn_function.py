@@ -22,7 +22,8 @@ from limitsurf.kernels.median_states import median_states
 from limitsurf.kernels.steepest_turn import steepest_turn
 from limitsurf.kernels.turn_roots import slope_signs
 from limitsurf.planning.median_pieces import MedianPiece, crossed_in_the_middle, median_pieces
-from limitsurf.planning.turn_certificate import TurnCertificate, sign_changes
+from limitsurf.planning.turn_certificate import TurnCertificate, changes_in_cells
+from limitsurf.sets.arguments import as_instance, as_number, as_numbers
 from limitsurf.tolerances import FLAT_MOMENT, NEUTRAL
 
 __all__ = ["TurnFunction", "turn_function"]
@@ -82,9 +83,9 @@ class TurnFunction:
 
         The offset counts along ``n = (-sin theta, cos theta)``, theta = -phi.
         """
-        reversals = np.floor((-float(phi) - START) / np.pi)
+        theta = -as_number("phi", phi)
+        reversals = np.floor((theta - START) / np.pi)
         offset = float(self._states(phi)[..., 0]) * self.part.area**0.5 * (-1.0) ** reversals
-        theta = -float(phi)
         along = np.array([np.cos(theta), np.sin(theta)])
         middle = np.asarray(self.part.centroid) + offset * np.array([-along[1], along[0]])
         reach = 2.0 * self.part.circumradius
@@ -93,9 +94,7 @@ class TurnFunction:
 
     def _states(self, phi: ArrayLike) -> Array:
         """Return ``(z, U, U', J, chord length, s_m)`` at area 1 along a new last axis."""
-        angles = np.asarray(phi, dtype=np.float64)
-        if not np.isfinite(angles).all():
-            raise InputError("phi", "must be finite", value=phi, remedy="give radians")
+        angles = as_numbers("phi", phi)
         theta = _from_start(-angles.ravel())
         order = np.argsort(theta)
         states = np.empty((theta.size, 6))
@@ -133,7 +132,7 @@ class TurnFunction:
     def certificate(self) -> TurnCertificate:
         """Why the equilibria are all there are."""
         found = np.concatenate([self.stable, self.unstable])
-        cover = sign_changes(self.cells)
+        cover = changes_in_cells(self.cells)
         residual = float(np.abs(self._states(found)[:, 2]).max(initial=0.0))
         return TurnCertificate(len(found), cover.bound, cover.unresolved, cover.widest, residual)
 
@@ -185,7 +184,7 @@ def turn_function(part: Part, *, neutral_angle: float = NEUTRAL) -> TurnFunction
     Raises
     ------
     InputError
-        `neutral_angle` is negative or not finite.
+        No `Part`; `neutral_angle` is negative or not finite.
 
     Examples
     --------
@@ -199,8 +198,9 @@ def turn_function(part: Part, *, neutral_angle: float = NEUTRAL) -> TurnFunction
     """
     if not (np.isfinite(neutral_angle) and neutral_angle >= 0.0):
         raise InputError("neutral_angle", "must be at least 0 rad", value=neutral_angle)
+    as_instance("part", part, Part, remedy="make one of the outline: Part(outline)")
     cells, _ = slope_signs(*_unit_part(part), _rounding(part))
-    found = sign_changes(cells)
+    found = changes_in_cells(cells)
     return TurnFunction(
         part, _orientations(found.rising), _orientations(found.falling), cells, neutral_angle
     )

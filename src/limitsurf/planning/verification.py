@@ -16,7 +16,7 @@ from limitsurf.planning.array_verification import ArrayVerification, verify_on_a
 from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.ideal_verification import IdealVerification, verify_in_ideal_field
 from limitsurf.planning.verification_record import Verification
-from limitsurf.sets.arguments import as_count, as_positive
+from limitsurf.sets.arguments import as_count, as_instance, as_positive
 
 __all__ = ["Verification", "verify_alignment"]
 
@@ -124,6 +124,8 @@ def verify_alignment(
     >>> verify_alignment(plan_alignment(part), part, IdealSqueeze(0.0), samples=100)
     Verification(100 of 100 runs aligned, 95 % interval 96.3 to 100.0 %)
     """
+    as_instance("plan", plan, AlignmentPlan, remedy="make one with plan_alignment")
+    as_instance("part", part, Part)
     as_count("samples", samples)
     as_count("seed", seed, 0)
     if tolerance is not None:

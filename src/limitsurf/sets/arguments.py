@@ -16,7 +16,9 @@ __all__ = [
     "Metric",
     "as_array",
     "as_count",
+    "as_instance",
     "as_number",
+    "as_numbers",
     "as_points",
     "as_positive",
     "as_rows",
@@ -28,6 +30,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=np.generic)
+K = TypeVar("K")
 
 
 def as_array(name: str, value: ArrayLike, *shape: int | None, copy: bool = True) -> Array:
@@ -68,6 +71,24 @@ def as_number(name: str, value: Any) -> float:
     except (TypeError, ValueError):
         pass
     raise InputError(name, "is no number", value=value, remedy="give one in SI units")
+
+
+def as_numbers(name: str, value: ArrayLike) -> Array:
+    """Return finite numbers of any shape; InputError for anything else."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(name, "is no array of numbers", remedy="check its entries") from error
+    if not np.isfinite(array).all():
+        raise InputError(name, "must be finite", value=value, remedy="remove NaN and inf")
+    return array
+
+
+def as_instance(name: str, value: Any, kind: type[K], remedy: str = "") -> K:
+    """Return an object of a class; InputError for anything else."""
+    if not isinstance(value, kind):
+        raise InputError(name, f"is no {kind.__name__}", value=value, remedy=remedy)
+    return value
 
 
 def as_positive(name: str, value: Any) -> float:

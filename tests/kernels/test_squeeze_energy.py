@@ -3,7 +3,7 @@ import shapely
 
 from limitsurf.actuators.density_field import DensityField
 from limitsurf.geometry.part import Part
-from limitsurf.kernels.squeeze_load import squeeze_loads
+from limitsurf.kernels.squeeze_energy import squeeze_loads
 from limitsurf.sets.arguments import writable
 
 PARTS = (
