@@ -260,7 +260,7 @@ def test_bad_input_is_one_line_and_leaves_nothing(tmp_path, capsys, name):
         ("array too small", ["resonator32", "larger array"]),
         ("too heavy", ["10 V", "16.7 V would lift it"]),
         ("no samples", ["samples", "whole number from 1 on"]),
-        ("margin", ["min_margin", "33.67 deg is reachable"]),
+        ("margin", ["min_margin", "33.6711 deg is reachable"]),
         ("no density", ["areal_density"]),
         ("lines without unit", ["lines: ", "no unit", "0, 45, 90 deg"]),
         ("lines without commas", ["lines: ", "0 45 90 deg"]),
