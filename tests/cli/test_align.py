@@ -269,7 +269,7 @@ def test_bad_input_is_one_line_and_leaves_nothing(tmp_path, capsys, name):
         ("too few lines", ["never merge", "add a line"]),
         ("goal out of reach", ["goal: ", "90.00000, 135.00000 deg"]),
         ("goal without unit", ["goal: ", "no unit"]),
-        ("margin of a model", ["min_margin", "19.31 deg is reachable"]),
+        ("margin of a model", ["min_margin", "19.3148 deg is reachable"]),
         ("room for a push", ["larger array"]),
         ("neutral", ["cannot be aligned"]),
     ],
