@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from limitsurf.datasets.columns import Motion, Table, read_table, write_table
+from limitsurf.datasets.frame_files import read_frame, write_frame
 from limitsurf.datasets.plausibility import warn_of_units
-from limitsurf.errors import InputError
+from limitsurf.errors import DataError, InputError
 from limitsurf.sets.arguments import as_array, as_positive
+from limitsurf.units import parse_quantity
 
-__all__ = ["Motion", "SlidingData"]
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["SlidingData", "read_sliding_data"]
 
 Array = NDArray[np.float64]
-
-Motion = Literal["displacement", "velocity"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,6 +75,8 @@ class SlidingData:
     source: str = ""
     licence: str = ""
 
+    _NOTES: ClassVar = ("name", "source", "licence")
+
     def __post_init__(self) -> None:
         """Check all, and make the arrays read-only."""
         loads = as_array("loads", self.loads, None, 3)
@@ -78,6 +86,9 @@ class SlidingData:
         rho = as_positive("rho", self.rho)
         if self.motion not in ("displacement", "velocity"):
             raise InputError("motion", "must be displacement or velocity", value=self.motion)
+        for note in self._NOTES:
+            if not isinstance(text := getattr(self, note), str) or not text.isprintable():
+                raise InputError(note, "must be one line of text", value=text)
         sd_loads = _deviations("load_deviations", self.load_deviations, len(loads))
         sd_twists = _deviations("twist_deviations", self.twist_deviations, len(loads))
         self._set(loads=loads, twists=twists, rho=rho)
@@ -107,16 +118,119 @@ class SlidingData:
             twist_deviations=None if sd_twists is None else sd_twists[chosen],
         )
 
+    def to_frame(self) -> pd.DataFrame:
+        """Return a data frame with named columns in SI units; rho and notes in its `attrs`."""
+        table = Table(
+            self.loads, self.twists, self.motion, self.load_deviations, self.twist_deviations
+        )
+        frame = write_table(table)
+        notes = {note: text for note in self._NOTES if (text := getattr(self, note))}
+        frame.attrs = {"rho": f"{self.rho!r} m", **notes}
+        return frame
+
+    @classmethod
+    def from_frame(
+        cls, frame: pd.DataFrame, rho: str | float | None = None, *, ignore: Sequence[str] = ()
+    ) -> SlidingData:
+        """Return the pairs of a data frame, columns by name and unit, in any order.
+
+        Parameters
+        ----------
+        frame : DataFrame
+            Columns ``fx [N], fy [N], m [N m]``, and ``dx [m], dy [m], dtheta [rad]`` or ``vx [m/s],
+            vy [m/s], omega [rad/s]``; standard deviations ``sd fx [N]`` and so on. Other units of
+            the same kind are converted, such as ``m [N mm]`` or ``omega [deg/s]``.
+        rho : float or str, optional
+            Length [m], or text such as ``"50 mm"``; needed unless the frame's `attrs` have it.
+        ignore : sequence of str
+            Columns to leave out; others that are unknown are errors.
+
+        Raises
+        ------
+        InputError
+            See `read_table`; no rho.
+
+        Warns
+        -----
+        DroppedRows
+            Rows that are not finite were dropped; says how many.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> table = {"fx [N]": [1.0], "fy [N]": [0.0], "m [N mm]": [50.0]}
+        >>> table |= {"vx [mm/s]": [2.0], "vy [mm/s]": [0.0], "omega [deg/s]": [1.0]}
+        >>> SlidingData.from_frame(pd.DataFrame(table), rho="50 mm").loads
+        array([[1.  , 0.  , 0.05]])
+        """
+        given = frame.attrs.get("rho") if rho is None else rho
+        if given is None:
+            raise InputError("rho", "is not known", remedy="give it, such as rho='50 mm'")
+        table = read_table(frame, ignore)
+        return cls(
+            table.loads,
+            table.twists,
+            parse_quantity(given, "m", name="rho"),
+            load_deviations=table.load_deviations,
+            twist_deviations=table.twist_deviations,
+            motion=table.motion,
+            **{note: str(frame.attrs.get(note, "")) for note in cls._NOTES},
+        )
+
+    def write(self, path: str | Path) -> None:
+        """Write a ``.csv`` or ``.parquet`` file, as a whole or not at all; see `read_sliding_data`.
+
+        Raises
+        ------
+        InputError
+            Another suffix, no such folder, or no pyarrow for parquet.
+        """
+        write_frame(self.to_frame(), path)
+
     def __repr__(self) -> str:
         """Return name, number of pairs, and the largest loads and motions with their units."""
         force, moment = _largest(self.loads)
         way, turn = _largest(self.twists)
         per = "" if self.motion == "displacement" else "/s"
+        pairs = f"{len(self)} pair{'s' if len(self) > 1 else ''}"
         return (
-            f"SlidingData({self.name + ', ' if self.name else ''}{len(self)} pairs: "
+            f"SlidingData({self.name + ', ' if self.name else ''}{pairs}: "
             f"to {force:.3g} N, {moment:.3g} N m and {way:.3g} m{per}, {turn:.3g} rad{per}; "
             f"rho {self.rho:g} m)"
         )
+
+
+def read_sliding_data(
+    path: str | Path, rho: str | float | None = None, *, ignore: Sequence[str] = ()
+) -> SlidingData:
+    """Read pairs from a ``.csv`` or ``.parquet`` file; see `SlidingData.from_frame`.
+
+    A CSV file has a row of titles; lines before it that begin with ``#`` may hold notes, such as
+    ``# rho: 50 mm``. Decimal points, commas between the columns, and nothing or ``nan`` for
+    what is missing. Rows that are not finite are dropped with a warning.
+
+    Raises
+    ------
+    DataError
+        No such file, another suffix, broken or unsuited contents; says where.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> data = SlidingData([[2, 0, 0.1]], [[3e-3, 0, 0.5]], rho=0.05, name="one push")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     data.write(f"{folder}/push.csv")
+    ...     read_sliding_data(f"{folder}/push.csv")
+    SlidingData(one push, 1 pair: to 2 N, 0.1 N m and 0.003 m, 0.5 rad; rho 0.05 m)
+    """
+    try:
+        return SlidingData.from_frame(read_frame(path, ignore), rho, ignore=ignore)
+    except DataError:
+        raise
+    except InputError as error:
+        raise DataError(
+            path, error.problem, column=error.argument, value=error.value, remedy=error.remedy
+        ) from error
 
 
 def _deviations(name: str, value: ArrayLike | None, n: int) -> Array | None:
