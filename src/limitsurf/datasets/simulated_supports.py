@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError
-from limitsurf.sets.arguments import as_positive
+from limitsurf.sets.arguments import as_count, as_positive
 
 __all__ = ["SUPPORT_KINDS", "SupportKind", "make_support"]
 
@@ -23,7 +23,7 @@ _RING, _BAR, _SIDE = 60, 30, 12  # contacts of a ring, of a bar, along the side 
 
 def make_support(
     kind: SupportKind,
-    seed: int | np.random.Generator = 0,
+    seed: int = 0,
     *,
     size: float = 0.05,
     friction: float = 1.0,
@@ -35,7 +35,7 @@ def make_support(
     kind : {"ring", "square", "three points", "ten points", "bar"}
         A circle of radius `size`; a square of half side `size`, uniformly loaded; points anywhere
         in that square with random shares; a straight bar of half length `size`, turned at random.
-    seed : int or numpy Generator
+    seed : int
         For points and the bar's direction.
     size : float
         Length [m].
@@ -58,16 +58,16 @@ def make_support(
     if kind not in SUPPORT_KINDS:
         raise InputError("kind", "is unknown", value=kind, remedy=", ".join(SUPPORT_KINDS))
     total, half = as_positive("friction", friction), as_positive("size", size)
-    places, share = _contacts(kind, np.random.default_rng(seed))
-    share /= share.sum()
+    places, share = _contacts(kind, np.random.default_rng(as_count("seed", seed, 0)))
+    share = np.asarray(share / share.sum())
     return ContactSet(half * (places - share @ places), total * share)
 
 
 def _contacts(kind: str, rng: np.random.Generator) -> tuple[Array, Array]:
     """Return places and shares of contacts of size 1."""
     if kind == "ring":
-        angle = 2.0 * np.pi * np.arange(_RING) / _RING
-        return np.column_stack([np.cos(angle), np.sin(angle)]), np.ones(_RING)
+        around = 2.0 * np.pi * np.arange(_RING) / _RING
+        return np.column_stack([np.cos(around), np.sin(around)]), np.ones(_RING)
     if kind == "bar":
         angle = rng.uniform(0.0, np.pi)
         return np.outer(_midpoints(_BAR), [np.cos(angle), np.sin(angle)]), np.ones(_BAR)

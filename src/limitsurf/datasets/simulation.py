@@ -54,7 +54,7 @@ def make_sliding_data(
     surface: ConvexSet,
     n: int,
     noise: SlidingNoise | float = 0.0,
-    seed: int | np.random.Generator = 0,
+    seed: int = 0,
     *,
     rho: float,
     distance: float = 0.01,
@@ -74,7 +74,7 @@ def make_sliding_data(
     noise : SlidingNoise or float
         Noise of loads and motions; a number stands for both. Without noise, loads lie on the
         boundary to rounding.
-    seed : int or numpy Generator
+    seed : int
         The same seed gives the same pairs, and the same motions and loads before noise.
     rho : float
         Length that makes moments forces [m].
@@ -98,7 +98,8 @@ def make_sliding_data(
         raise InputError("surface", "is no convex set in three dimensions", value=surface)
     count, arm, way = as_count("n", n), as_positive("rho", rho), as_positive("distance", distance)
     sd = noise if isinstance(noise, SlidingNoise) else SlidingNoise(noise, noise)
-    rng, scale = np.random.default_rng(seed), np.array([1.0, 1.0, arm])
+    rng = np.random.default_rng(as_count("seed", seed, 0))
+    scale = np.array([1.0, 1.0, arm])
     motions = _unit(rng.normal(size=(count, 3)))
     loads = -surface.support_point(-motions / scale) / scale
     size = float(np.sqrt((loads**2).sum(axis=1).mean()))
