@@ -90,5 +90,5 @@ def test_pure_sliding_and_few_pairs_are_not_suspected(rows):
 def test_repr_says_what_and_how_large():
     data = SlidingData([[3, 4, 0.1]], [[0, 0.002, -0.5]], RHO, motion="velocity", name="ring")
     assert repr(data) == (
-        "SlidingData(ring, 1 pairs: to 5 N, 0.1 N m and 0.002 m/s, 0.5 rad/s; rho 0.05 m)"
+        "SlidingData(ring, 1 pair: to 5 N, 0.1 N m and 0.002 m/s, 0.5 rad/s; rho 0.05 m)"
     )
