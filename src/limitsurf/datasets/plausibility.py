@@ -24,14 +24,15 @@ class ImplausibleUnits(UserWarning):
 
 
 def warn_of_units(loads: Array, twists: Array, rho: float) -> None:
-    """Warn if root mean square ``m`` and ``rho f``, or ``v`` and ``rho omega``, differ 100-fold.
+    """Warn if ``m`` and ``rho f``, or ``v`` and ``rho omega``, are of sizes that differ 100-fold.
 
     Contacts within a few rho of the reference point keep both ratios near one, unless all pairs
-    are pure sliding or pure turning; a moment in N mm or a length in mm is off by 1000.
+    are pure sliding or pure turning; a moment in N mm or a length in mm is off by 1000. Loads are
+    taken from their mean, to which active contacts add what they like.
     """
     if len(loads) < _FEWEST:
         return
-    force, moment = _sizes(loads)
+    force, moment = _sizes(loads - loads.mean(axis=0))
     if (lever := _ratio(moment, force * rho)) is not None:
         _warn(f"the moments are {lever:.2g} times rho = {rho:g} m times the forces", "N and N m")
     speed, turning = _sizes(twists)

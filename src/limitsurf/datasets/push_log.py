@@ -93,12 +93,13 @@ class _Log:
             raise self.wrong(f"time runs backwards among the {what}")
         return table
 
-    def poses(self, table: Array, what: str) -> Array:
-        """Return poses ``x, y, theta`` [mm, mm, rad] of rows ``x y z qw qx qy qz``."""
+    def poses(self, rows: Array, what: str) -> Array:
+        """Return poses ``x, y, theta`` [mm, mm, rad] of the last rows ``... x y z qw qx qy qz``."""
+        table = rows[:, -7:]
         sizes = np.linalg.norm(table[:, 3:], axis=1)
         off = np.flatnonzero(np.abs(sizes - 1.0) > _UNIT)
         if len(off):
-            self.at -= 1
+            self.at -= (len(rows) - int(off[0])) * rows.shape[1]
             value = float(sizes[off[0]])
             raise self.wrong(f"has a quaternion of another norm than 1 in {what}", value=value)
         angle = np.unwrap(2.0 * np.arctan2(table[:, 6], table[:, 3]))
@@ -123,7 +124,7 @@ def _push(log: _Log, name: str, reference: Array) -> RecordedPush:
     log.poses(ends, f"the poses of {name}")
     forces = log.rows(3, f"forces of {name}")
     tips = log.rows(8, f"tip poses of {name}")
-    tip = log.poses(tips[:, 1:], f"the tip poses of {name}") * [_MM, _MM, 1.0]
+    tip = log.poses(tips, f"the tip poses of {name}") * [_MM, _MM, 1.0]
     before, after = (_reference_pose(row, reference) for row in ends)
     after[2] = before[2] + np.angle(np.exp(1j * (after[2] - before[2])))
     start = forces[0, 0]

@@ -1,0 +1,43 @@
+"""Logs of pushes made up for tests, with known loads."""
+
+import numpy as np
+
+TOOL = np.sqrt(0.5) * np.array([[1.0, 1.0], [1.0, -1.0]])
+
+
+def turn(angle):
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def quaternion(angle):
+    return [np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)]
+
+
+def row(numbers):
+    return " ".join(repr(float(x)) for x in numbers)
+
+
+def pose_row(x, y, angle):
+    """Return a row of a pose [m, rad], written in mm."""
+    return row([1e3 * x, 1e3 * y, 9.9, *quaternion(angle)])
+
+
+def push_text(before, after, point, force, *, tip_angle=0.7, n=40, offset=(0.3, -0.2)):
+    """Return a push of a part that moves evenly while a constant body force acts at a body point.
+
+    The first samples are the sensor's zero, `offset`; then the part moves.
+    """
+    before, after = np.array(before), np.array(after)
+    first = int(np.ceil(0.3 * n)) - 1
+    times = 1.4e9 + 0.01 * np.arange(n)
+    way = np.concatenate([np.zeros(first), np.linspace(0.0, 1.0, n - first)])
+    forces, tips = [], []
+    for k, w in enumerate(way):
+        pose = before + w * (after - before)
+        world = turn(pose[2]) @ force if k >= first else np.zeros(2)
+        sensor = offset - np.linalg.solve(TOOL, turn(tip_angle).T @ world)
+        place = pose[:2] + turn(pose[2]) @ point
+        forces.append(row([times[k], *sensor]))
+        tips.append(f"{times[k]} " + pose_row(*place, tip_angle))
+    lines = [pose_row(*before), pose_row(*after), str(n), *forces, str(n), *tips]
+    return "\n".join(lines) + "\n"
