@@ -10,7 +10,9 @@ def turn(angle):
 
 
 def quaternion(angle):
-    return [np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)]
+    """Return the one of two quaternions whose first entry is not negative."""
+    w, z = np.cos(angle / 2), np.sin(angle / 2)
+    return [abs(w), 0.0, 0.0, np.copysign(1.0, w) * z]
 
 
 def row(numbers):
@@ -41,3 +43,13 @@ def push_text(before, after, point, force, *, tip_angle=0.7, n=40, offset=(0.3, 
         tips.append(f"{times[k]} " + pose_row(*place, tip_angle))
     lines = [pose_row(*before), pose_row(*after), str(n), *forces, str(n), *tips]
     return "\n".join(lines) + "\n"
+
+
+def turning_tip_text(angles, n=40, every=3):
+    """Return a push without force of a part at rest, by a tip that turns evenly, seldom seen."""
+    times = 1.4e9 + 0.01 * np.arange(n)
+    seen = np.arange(0, n, every)
+    turning = np.linspace(*angles, n)
+    rest, forces = pose_row(0.0, 0.0, 0.0), [row([t, 0.0, 0.0]) for t in times]
+    tips = [f"{times[k]} " + pose_row(0.1, 0.0, turning[k]) for k in seen]
+    return "\n".join([rest, rest, str(n), *forces, str(len(seen)), *tips]) + "\n"

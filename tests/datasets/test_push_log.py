@@ -5,7 +5,7 @@ import pytest
 
 from limitsurf.datasets.push_log import read_push_log
 from limitsurf.errors import DataError, InputError
-from tests.datasets.logs import push_text, turn
+from tests.datasets.logs import push_text, turn, turning_tip_text
 
 PUSHES = [
     {
@@ -51,6 +51,14 @@ def test_forces_are_in_world_axes(path):
     assert push.force[11] == pytest.approx(ends[0])
     assert push.force[-1] == pytest.approx(ends[1])
     assert push.force[:11] == pytest.approx(np.zeros((11, 2)))
+
+
+def test_tips_turn_through_pi_between_their_samples(tmp_path):
+    log = tmp_path / "log.txt"
+    log.write_text("1\n" + turning_tip_text((3.0, 3.3)))
+    (push,) = read_push_log(log)
+    assert len(push.tip) == 14
+    assert push.tip_at_samples[:, 2] == pytest.approx(np.linspace(3.0, 3.3, 40))
 
 
 def test_the_reference_point_moves_poses_and_moments(path):

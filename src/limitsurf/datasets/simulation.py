@@ -43,10 +43,10 @@ class SlidingNoise:
                 raise InputError(name, "must be at least 0", value=size)
 
 
-#: Noise like that of the measured pushes of Zhou et al. (ICRA 2016): on their four supports of
-#: three feet, the exact limit surface then misses the motion by 6.9, 6.6, 12.3 and 6.7 degrees in
+#: Noise like that of the measured pushes of Zhou et al. (ICRA 2016). On their four supports of
+#: three feet the exact limit surface then misses the motion by 7.7, 7.3, 12.2 and 7.2 degrees in
 #: the mean; measured 7.2, 6.6, 11.9 and 10.8. Each component of load scatters by 0.05 within a
-#: push; of its mean 0.02 is assumed.
+#: push; 0.02 is assumed for its mean.
 ZHOU2016_NOISE: Final = SlidingNoise(load=0.02, motion=0.09)
 
 
