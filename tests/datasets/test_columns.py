@@ -108,6 +108,9 @@ def test_columns_can_be_ignored(data):
     with pytest.raises(InputError, match="comment: is an unknown column; ignore it, or name it"):
         SlidingData.from_frame(frame)
     assert same(SlidingData.from_frame(frame, ignore=["comment", "push"]), data)
+    assert same(SlidingData.from_frame(frame.drop(columns="push"), ignore="comment"), data)
+    with pytest.raises(InputError, match="frame: is no data frame"):
+        SlidingData.from_frame([[1.0]])
 
 
 def test_words_among_numbers_are_named_with_their_row(data):

@@ -34,7 +34,7 @@ def csv(tmp_path):
     return write
 
 
-@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+@pytest.mark.parametrize("suffix", ["csv", "parquet", "CSV"])
 def test_files_give_back_the_very_same_numbers(data, tmp_path, suffix):
     path = tmp_path / f"pairs.{suffix}"
     data.write(path)
@@ -94,7 +94,7 @@ def test_ignored_columns_may_hold_words(csv):
     text = "\n".join(lines)
     with pytest.raises(DataError, match="is no number"):
         read_sliding_data(csv(text))
-    assert same(read_sliding_data(csv(text), ignore=["who"]), read_sliding_data(csv(GOOD)))
+    assert same(read_sliding_data(csv(text), ignore="who"), read_sliding_data(csv(GOOD)))
 
 
 @pytest.mark.parametrize("text", ["", "# rho: 1 m\n", "\n\n"])

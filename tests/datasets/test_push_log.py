@@ -102,6 +102,15 @@ def test_broken_logs_are_named_by_line(path, line, change, found, message):
     assert (caught.value.file, caught.value.line) == (str(path), found)
 
 
+def test_a_push_whose_force_comes_too_early(tmp_path):
+    log = tmp_path / "log.txt"
+    lines = ("1\n" + turning_tip_text((0.0, 0.1))).splitlines()
+    lines[6] = lines[6].replace("0.0 0.0", "90.0 0.0")
+    log.write_text("\n".join(lines))
+    with pytest.raises(DataError, match="push 0, which has no force worth averaging"):
+        read_push_log(log)
+
+
 def test_logs_that_are_none(tmp_path):
     empty = tmp_path / "empty.txt"
     empty.write_text(" \n")

@@ -110,6 +110,7 @@ def test_loads_do_work_on_the_motion(triangles):
 def test_single_supports_can_be_read(folder, triangles):
     (only,) = load_zhou2016(folder, ["patch"]).values()
     assert (only.data.loads == triangles["patch"].data.loads).all()
+    assert list(load_zhou2016(folder, "patch")) == ["patch"]
     with pytest.raises(DataError, match=f"has no log wood; there are {SUPPORTS[0]}, "):
         load_zhou2016(folder, ["wood"])
 

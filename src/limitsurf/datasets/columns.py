@@ -63,8 +63,10 @@ def write_table(table: Table) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def read_table(frame: pd.DataFrame, ignore: Sequence[str] = ()) -> Table:
+def read_table(frame: pd.DataFrame, ignore: str | Sequence[str] = ()) -> Table:
     """Return the numbers of a data frame, converted to SI units; rows not finite are dropped.
+
+    Columns named in `ignore` are left out.
 
     Raises
     ------
@@ -77,7 +79,10 @@ def read_table(frame: pd.DataFrame, ignore: Sequence[str] = ()) -> Table:
     DroppedRows
         Says how many rows were dropped, and because of which columns.
     """
-    titles = _titles([str(title) for title in frame.columns if title not in ignore])
+    if not hasattr(frame, "columns"):
+        raise InputError("frame", "is no data frame", value=frame)
+    ignored = [ignore] if isinstance(ignore, str) else list(ignore)
+    titles = _titles([str(title) for title in frame.columns if title not in ignored])
     motions = [motion for motion, names in _TWIST.items() if set(names) & set(titles)]
     if len(motions) > 1:
         raise InputError("columns", "hold displacements and velocities", remedy="ignore one kind")

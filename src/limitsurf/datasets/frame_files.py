@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read_frame", "write_frame"]
 
+_SUFFIXES = (".csv", ".parquet")
 _NO_PYARROW = "parquet files need pyarrow"
 _INSTALL = "pip install 'limitsurf[fit]', or take .csv"
 
@@ -23,11 +24,11 @@ _INSTALL = "pip install 'limitsurf[fit]', or take .csv"
 def write_frame(frame: pd.DataFrame, path: str | Path) -> None:
     """Write a data frame and its `attrs`; an interrupted write leaves the file before."""
     target = as_target(path, "path")
-    if target is None or target.suffix not in (".csv", ".parquet"):
+    if target is None or (suffix := target.suffix.lower()) not in _SUFFIXES:
         raise InputError("path", "must end in .csv or .parquet", value=str(path))
     unfinished = target.with_name(target.name + ".part")
     try:
-        if target.suffix == ".csv":
+        if suffix == ".csv":
             notes = "".join(f"# {key}: {value}\n" for key, value in frame.attrs.items())
             unfinished.write_text(notes + frame.to_csv(index=False, lineterminator="\n"), "utf-8")
         else:
@@ -39,7 +40,7 @@ def write_frame(frame: pd.DataFrame, path: str | Path) -> None:
         unfinished.unlink(missing_ok=True)
 
 
-def read_frame(path: str | Path, ignore: Sequence[str] = ()) -> pd.DataFrame:
+def read_frame(path: str | Path, ignore: str | Sequence[str] = ()) -> pd.DataFrame:
     """Read a data frame; the rows of a CSV file are numbered by their lines in it.
 
     Raises
@@ -48,12 +49,12 @@ def read_frame(path: str | Path, ignore: Sequence[str] = ()) -> pd.DataFrame:
         No such file, another suffix, rows of unequal length, entries that are no numbers in
         columns that are not ignored.
     """
-    file = Path(path)
-    if file.suffix not in (".csv", ".parquet"):
+    file, ignored = Path(path), [ignore] if isinstance(ignore, str) else list(ignore)
+    if (suffix := file.suffix.lower()) not in _SUFFIXES:
         raise DataError(file, "must end in .csv or .parquet")
     try:
-        return _read_csv(file, ignore) if file.suffix == ".csv" else _read_parquet(file)
-    except (OSError, UnicodeDecodeError) as error:
+        return _read_csv(file, ignored) if suffix == ".csv" else _read_parquet(file)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise DataError(file, f"cannot be read: {error}", remedy="check the path") from error
 
 

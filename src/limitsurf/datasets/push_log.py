@@ -128,7 +128,11 @@ def _push(log: _Log, name: str, reference: Array) -> RecordedPush:
     before, after = (_reference_pose(row, reference) for row in ends)
     after[2] = before[2] + np.angle(np.exp(1j * (after[2] - before[2])))
     start = forces[0, 0]
-    return RecordedPush(before, after, forces[:, 0] - start, forces[:, 1:], tips[:, 0] - start, tip)
+    times = forces[:, 0] - start, tips[:, 0] - start
+    push = RecordedPush(before, after, times[0], forces[:, 1:], times[1], tip)
+    if not push.averaged.any():
+        raise log.wrong(f"is after {name}, which has no force worth averaging")
+    return push
 
 
 def _reference_pose(row: Array, reference: Array) -> Array:

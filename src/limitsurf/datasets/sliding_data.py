@@ -120,17 +120,19 @@ class SlidingData:
 
     def to_frame(self) -> pd.DataFrame:
         """Return a data frame with named columns in SI units; rho and notes in its `attrs`."""
-        table = Table(
-            self.loads, self.twists, self.motion, self.load_deviations, self.twist_deviations
-        )
-        frame = write_table(table)
+        deviations = self.load_deviations, self.twist_deviations
+        frame = write_table(Table(self.loads, self.twists, self.motion, *deviations))
         notes = {note: text for note in self._NOTES if (text := getattr(self, note))}
         frame.attrs = {"rho": f"{self.rho!r} m", **notes}
         return frame
 
     @classmethod
     def from_frame(
-        cls, frame: pd.DataFrame, rho: str | float | None = None, *, ignore: Sequence[str] = ()
+        cls,
+        frame: pd.DataFrame,
+        rho: str | float | None = None,
+        *,
+        ignore: str | Sequence[str] = (),
     ) -> SlidingData:
         """Return the pairs of a data frame, columns by name and unit, in any order.
 
@@ -142,7 +144,7 @@ class SlidingData:
             the same kind are converted, such as ``m [N mm]`` or ``omega [deg/s]``.
         rho : float or str, optional
             Length [m], or text such as ``"50 mm"``; needed unless the frame's `attrs` have it.
-        ignore : sequence of str
+        ignore : str or sequence of str
             Columns to leave out; others that are unknown are errors.
 
         Raises
@@ -163,10 +165,11 @@ class SlidingData:
         >>> SlidingData.from_frame(pd.DataFrame(table), rho="50 mm").loads
         array([[1.  , 0.  , 0.05]])
         """
-        given = frame.attrs.get("rho") if rho is None else rho
+        notes = getattr(frame, "attrs", {})
+        given = notes.get("rho") if rho is None else rho
+        table = read_table(frame, ignore)
         if given is None:
             raise InputError("rho", "is not known", remedy="give it, such as rho='50 mm'")
-        table = read_table(frame, ignore)
         return cls(
             table.loads,
             table.twists,
@@ -174,7 +177,7 @@ class SlidingData:
             load_deviations=table.load_deviations,
             twist_deviations=table.twist_deviations,
             motion=table.motion,
-            **{note: str(frame.attrs.get(note, "")) for note in cls._NOTES},
+            **{note: str(notes.get(note, "")) for note in cls._NOTES},
         )
 
     def write(self, path: str | Path) -> None:
@@ -201,13 +204,12 @@ class SlidingData:
 
 
 def read_sliding_data(
-    path: str | Path, rho: str | float | None = None, *, ignore: Sequence[str] = ()
+    path: str | Path, rho: str | float | None = None, *, ignore: str | Sequence[str] = ()
 ) -> SlidingData:
     """Read pairs from a ``.csv`` or ``.parquet`` file; see `SlidingData.from_frame`.
 
-    A CSV file has a row of titles; lines before it that begin with ``#`` may hold notes, such as
-    ``# rho: 50 mm``. Decimal points, commas between the columns, and nothing or ``nan`` for
-    what is missing. Rows that are not finite are dropped with a warning.
+    A CSV file has a row of titles, commas and decimal points, and nothing or ``nan`` for what is
+    missing; lines before the titles that begin with ``#`` hold notes, such as ``# rho: 50 mm``.
 
     Raises
     ------
@@ -223,10 +225,9 @@ def read_sliding_data(
     ...     read_sliding_data(f"{folder}/push.csv")
     SlidingData(one push, 1 pair: to 2 N, 0.1 N m and 0.003 m, 0.5 rad; rho 0.05 m)
     """
+    frame = read_frame(path, ignore)
     try:
-        return SlidingData.from_frame(read_frame(path, ignore), rho, ignore=ignore)
-    except DataError:
-        raise
+        return SlidingData.from_frame(frame, rho, ignore=ignore)
     except InputError as error:
         raise DataError(
             path, error.problem, column=error.argument, value=error.value, remedy=error.remedy

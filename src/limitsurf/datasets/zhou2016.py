@@ -87,7 +87,7 @@ class PushedTriangle:
 
 
 def load_zhou2016(
-    path: str | Path | None = None, supports: Iterable[str] | None = None
+    path: str | Path | None = None, supports: str | Iterable[str] | None = None
 ) -> dict[str, PushedTriangle]:
     """Read the measured pushes of a triangle: five supports with 50 pushes each.
 
@@ -96,7 +96,7 @@ def load_zhou2016(
     path : str or Path, optional
         Folder that holds the logs in its folder ``logs``. By default ``zhou2016`` in the folder
         that the environment variable LIMITSURF_DATA names, else what `fetch_zhou2016` has fetched.
-    supports : iterable of str, optional
+    supports : str or iterable of str, optional
         Names of logs; by default all that are there.
 
     Returns
@@ -117,7 +117,8 @@ def load_zhou2016(
     """
     folder = find_folder(path) / "logs"
     there = {file.stem: file for file in sorted(folder.glob("*.txt"))}
-    names = list(there) if supports is None else list(supports)
+    wanted = [supports] if isinstance(supports, str) else supports
+    names = list(there) if wanted is None else list(wanted)
     for name in names:
         if name not in there:
             raise DataError(folder, f"has no log {name}", remedy=f"there are {', '.join(there)}")
