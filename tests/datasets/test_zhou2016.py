@@ -29,7 +29,7 @@ COLUMNS = {
     "twists": ("dx_m", "dy_m", "dtheta_rad"),
     "load_deviations": ("sdFx", "sdFy", "sdM"),
 }
-ROUNDING = 1e-8  # of interpolated clock times near 1.4e9 s, and of the tip's quaternion
+BEYOND = 4e-9  # two of the 2250 numbers, both moments, are off by that much more [N m]
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,9 @@ def test_averages_agree_with_the_published_pairs_to_their_six_digits(folder, tri
     for name, columns in COLUMNS.items():
         table = np.array([[float(row[c]) for c in columns] for row in rows])
         half_a_digit = 0.5 * 10.0 ** (np.floor(np.log10(np.abs(table))) - 5)
-        assert (np.abs(getattr(triangle.data, name) - table) <= half_a_digit + ROUNDING).all()
+        beyond = np.abs(getattr(triangle.data, name) - table) - half_a_digit
+        assert (beyond <= [1e-12, 1e-12, BEYOND]).all()
+        assert (beyond[:, 2] > 1e-12).sum() <= 1
 
 
 def slow_pair(push):
