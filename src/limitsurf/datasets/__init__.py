@@ -1,0 +1,1 @@
+"""Measured and simulated pairs of loads and motions of sliding parts."""
