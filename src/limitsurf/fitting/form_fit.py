@@ -25,7 +25,7 @@ from limitsurf.errors import SolveFailed
 from limitsurf.fitting.forms import FormBasis
 from limitsurf.fitting.pairs import Pairs
 
-__all__ = ["FittedForm", "FormLoss", "fit_form", "normal_equations", "residuals"]
+__all__ = ["FittedForm", "FormLoss", "fit_form", "loss_value", "normal_equations", "residuals"]
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,7 @@ def fit_form(
     SolveFailed
         No minimum within `steps` steps; carries the best form.
     """
-    form = replace(start, value=_value(start, pairs, loss))
+    form = replace(start, value=loss_value(start, pairs, loss))
     degree = form.basis.degree
     for count in range(1, steps + 1):
         P, q = normal_equations(form, pairs, loss, offset)
@@ -159,7 +159,7 @@ def _linearised(
 
 
 def residuals(form: FittedForm, pairs: Pairs) -> tuple[Array, Array]:
-    """Return ``g/|g| - v`` (n, 3) and ``log H / d`` (n,)."""
+    """Return the residuals ``g/|g| - v`` (n, 3) and ``log H / d`` (n,)."""
     x = form.coordinates(pairs.loads)
     g = form.gradients(pairs.loads)
     r = g / np.linalg.norm(g, axis=1, keepdims=True) - pairs.motions
@@ -178,7 +178,8 @@ def _weights(r: Array, s: Array, weight: Array, loss: FormLoss) -> tuple[Array, 
     return found[0], found[1]
 
 
-def _value(form: FittedForm, pairs: Pairs, loss: FormLoss) -> float:
+def loss_value(form: FittedForm, pairs: Pairs, loss: FormLoss) -> float:
+    """Return the sum that the fit minimises."""
     r, s = residuals(form, pairs)
     total = 0.0
     for size, noise in (
@@ -199,7 +200,7 @@ def _shortened(form: FittedForm, step: Array, pairs: Pairs, loss: FormLoss) -> F
         move = share * step
         center = form.center + (move[m:] if len(move) > m else 0.0)
         new = replace(form, c=form.c + move[:m], center=center)
-        new = replace(new, value=_value(new, pairs, loss))
+        new = replace(new, value=loss_value(new, pairs, loss))
         if new.value <= form.value or share < _SHORTEST:
             return new
         share *= 0.5

@@ -130,6 +130,8 @@ def _weights(sample_weight: ArrayLike | None, n: int) -> Array:
         raise InputError("sample_weight", f"has shape {weight.shape}, not ({n},)")
     if not np.isfinite(weight).all() or (weight < 0.0).any():
         raise InputError("sample_weight", "must be finite and at least 0")
+    if n and not weight.any():
+        raise InputError("sample_weight", "all weights are zero")
     return weight
 
 
