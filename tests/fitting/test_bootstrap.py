@@ -57,7 +57,7 @@ def test_dropped_pairs_are_said_once():
     loads, twists = pairs_of(TRUE, 20, noise=0.05)
     loads[3] = np.nan
     twists[4] = -twists[4]
-    with pytest.warns(UserWarning) as caught:
+    with pytest.warns(UserWarning, match="dropped") as caught:
         bands = bootstrap(EllipsoidModel(RHO), loads, twists, n=4)
     assert len(caught) == 2
     assert len(bands.models) == 4

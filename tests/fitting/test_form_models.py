@@ -23,10 +23,10 @@ MODELS = [EllipsoidModel, QuarticModel]
 FEET = [[0.05, 0.0], [-0.03, 0.04], [-0.02, -0.04]]
 
 
-def quartic_surface():
-    """Return a convex quartic, skew to the axes, that no ellipsoid comes near."""
-    E = [[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 2, 0], [2, 0, 2], [1, 0, 3]]
-    centred = PolynomialSet(E, [1.0, 0.5, 1.0, 0.2, 0.4, 0.2])
+def quartic_surface(flat=False):
+    """Return a quartic, skew to the axes, that no ellipsoid comes near; `flat` where y = m = 0."""
+    E = [[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 2, 0], [2, 0, 2], [1, 0, 3], [0, 2, 2]]
+    centred = PolynomialSet(E, [1.0, 0.5, 1.0, 0.2, 0.4, 0.2, 0.0 if flat else 0.3])
     return LinearImage(AXES, centred)
 
 
@@ -43,14 +43,18 @@ def test_ellipsoids_are_recovered(model, center, rng):
 
 
 @pytest.mark.parametrize("center", [None, OFFSET])
-def test_quartics_are_recovered(center, rng):
-    true = (
-        quartic_surface() if center is None else LinearImage(np.eye(3), quartic_surface(), center)
-    )
+@pytest.mark.parametrize("flat", [False, True])
+def test_quartics_are_recovered(center, flat, rng):
+    """On the edge of the cone of convex forms, solver and floor leave a relative 1e-4."""
+    true = quartic_surface(flat)
+    if center is not None:
+        true = LinearImage(np.eye(3), true, center)
     loads, twists = pairs_of(true, 60)
     fit = QuarticModel(RHO, offset=center is not None, shrinkage=0.0).fit(loads, twists)
     d = rng.normal(size=(50, 3)) * [1.0, 1.0, 20.0]
-    np.testing.assert_allclose(fit.surface_.support(d), true.support(d), rtol=1e-5)
+    size = np.abs(true.support(d)).max()
+    error = np.abs(fit.surface_.support(d) - true.support(d)).max()
+    assert error < (1e-4 if flat else 1e-6) * size
     ellipsoid = EllipsoidModel(RHO, offset=center is not None).fit(loads, twists)
     assert ellipsoid.score(loads, twists) < -0.1
     assert isinstance(fit.surface_, PolynomialSet if center is None else LinearImage)
@@ -62,7 +66,7 @@ def test_without_noise_the_defaults_hardly_shrink(model, rng):
     fit = model(RHO).fit(*pairs_of(true, 60))
     d = rng.normal(size=(50, 3)) * [1.0, 1.0, 20.0]
     np.testing.assert_allclose(fit.surface_.support(d), true.support(d), rtol=2e-3)
-    assert fit.motion_noise_ < 0.02
+    assert fit.motion_noise_ < 0.04
 
 
 @pytest.mark.parametrize("model", MODELS)

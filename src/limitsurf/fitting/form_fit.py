@@ -120,7 +120,7 @@ def fit_form(
 def normal_equations(
     form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
 ) -> tuple[Array, Array]:
-    """Return P and q of one step: the loss near `form` is ``1/2 x'Px + q.x``, ``x = (c, da)``."""
+    """Return P and q of one step: the loss near `form` is ``1/2 x'Px + q.x``, ``x = (c, L da)``."""
     J, r = _linearised(form, pairs, loss, offset)
     P, q = J.T @ J, J.T @ r
     m = len(form.c)
@@ -133,7 +133,7 @@ def normal_equations(
 def _linearised(
     form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
 ) -> tuple[Array, Array]:
-    """Return J and r: weighted residuals near `form` are ``J (c, da) + r``.
+    """Return J and r: weighted residuals near `form` are ``J (c, L da) + r``.
 
     The direction g/|g| does not change with the size of c, so that ``J c`` vanishes at `form`.
     """
@@ -145,9 +145,8 @@ def _linearised(
     length = np.linalg.norm(g, axis=1)
     along = g / length[:, None]
     if offset:
-        curvature = L.T @ basis.hessians(x, form.c) @ L
-        G = np.concatenate([G, -curvature], axis=2)
-        values = np.hstack([values, -g])
+        G = np.concatenate([G, -L.T @ basis.hessians(x, form.c)], axis=2)
+        values = np.hstack([values, -basis.gradients(x) @ form.c])
     motion = (G - along[:, :, None] * np.einsum("ni,nik->nk", along, G)[:, None]) / length[
         :, None, None
     ]
@@ -198,7 +197,8 @@ def _shortened(form: FittedForm, step: Array, pairs: Pairs, loss: FormLoss) -> F
     m, share = len(form.c), 1.0
     while True:
         move = share * step
-        center = form.center + (move[m:] if len(move) > m else 0.0)
+        away = np.linalg.solve(form.frame, move[m:]) if len(move) > m else 0.0
+        center = form.center + away
         new = replace(form, c=form.c + move[:m], center=center)
         new = replace(new, value=loss_value(new, pairs, loss))
         if new.value <= form.value or share < _SHORTEST:
