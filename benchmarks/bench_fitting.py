@@ -7,7 +7,7 @@ start to the same end, which is checked.
 import sys
 
 import numpy as np
-from naive_fits import naive_fit, naive_step
+from naive_fits import naive_fit, naive_step, stacked_step
 from timing import timed
 
 from limitsurf.conic.convex_form import minimize_over_convex_forms
@@ -33,7 +33,7 @@ def noisy_pairs(n, seed=0):
 
 
 def main(sizes=(50, 200, 1000)):
-    print("one step and a whole fit (s); ours / cvxpy pair by pair / ratio")
+    print("one step and a whole fit (s); ours / cvxpy pair by pair, or all residuals in one matrix")
     for degree in (2, 4):
         for n in sizes:
             pairs = read_pairs(*noisy_pairs(n), None, RHO)
@@ -48,6 +48,8 @@ def main(sizes=(50, 200, 1000)):
             ours, c = timed(lambda: step(start), 9)
             naive, d = timed(lambda: naive_step(start, pairs, LOSS), 1)
             report(degree, n, "step", ours, naive, np.abs(c - d).max())
+            stacked, d = timed(lambda: stacked_step(start, pairs, LOSS), 3)
+            report(degree, n, "as matrix", ours, stacked, np.abs(c - d).max())
             ours, form = timed(lambda: fit_form(start, pairs, LOSS, False, 100), 5)
             steps = form.iterations
             naive, twin = timed(lambda: naive_fit(start, pairs, LOSS, steps), 1)

@@ -25,7 +25,15 @@ from limitsurf.errors import SolveFailed
 from limitsurf.fitting.forms import FormBasis
 from limitsurf.fitting.pairs import Pairs
 
-__all__ = ["FittedForm", "FormLoss", "fit_form", "loss_value", "normal_equations", "residuals"]
+__all__ = [
+    "FittedForm",
+    "FormLoss",
+    "fit_form",
+    "linearised",
+    "loss_value",
+    "normal_equations",
+    "residuals",
+]
 
 Array = NDArray[np.float64]
 
@@ -121,7 +129,7 @@ def normal_equations(
     form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
 ) -> tuple[Array, Array]:
     """Return P and q of one step: the loss near `form` is ``1/2 x'Px + q.x``, ``x = (c, L da)``."""
-    J, r = _linearised(form, pairs, loss, offset)
+    J, r = linearised(form, pairs, loss, offset)
     P, q = J.T @ J, J.T @ r
     m = len(form.c)
     prior = loss.shrinkage * form.basis.norm
@@ -130,9 +138,7 @@ def normal_equations(
     return P, q
 
 
-def _linearised(
-    form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
-) -> tuple[Array, Array]:
+def linearised(form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool) -> tuple[Array, Array]:
     """Return J and r: weighted residuals near `form` are ``J (c, L da) + r``.
 
     The direction g/|g| does not change with the size of c, so that ``J c`` vanishes at `form`.
