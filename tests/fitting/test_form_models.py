@@ -7,6 +7,8 @@ from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.fitting.base import angles_between
 from limitsurf.fitting.ellipsoid_model import EllipsoidModel
+from limitsurf.fitting.form_fit import FittedForm
+from limitsurf.fitting.forms import form_basis
 from limitsurf.fitting.pairs import scaled_motions
 from limitsurf.fitting.quartic_model import QuarticModel
 from limitsurf.fitting.surface_files import load_surface
@@ -181,6 +183,26 @@ def test_predictions_of_nothing_and_of_unknown(model):
     assert np.isnan(found[1]).all()
     assert np.linalg.norm(found[2]) == pytest.approx(1.0)
     assert isinstance(fit.surface_, ConvexSet)
+
+
+def test_scores_leave_out_what_is_unknown():
+    loads, twists = pairs_of(ContactSet(FEET, 1.0).limit_surface(), 20)
+    fit = EllipsoidModel(RHO).fit(loads, twists)
+    expected = fit.score(loads[1:], twists[1:])
+    loads[0, 0] = np.nan
+    with pytest.warns(UserWarning, match="dropped 1 of 20 pairs: NaN"):
+        assert fit.score(loads, twists) == pytest.approx(expected, rel=1e-12)
+    with pytest.raises(InputError, match="no pair without NaN"):
+        fit.score(loads[:1], twists[:1])
+
+
+def test_a_form_that_is_all_but_open_is_refused():
+    basis = form_basis(4)
+    thin = np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1e-5, 1e-5, 0.0]])  # (fx - fy)^2 + m^2
+    form = FittedForm(basis, basis.substituted(basis.ball, thin), np.eye(3), np.zeros(3))
+    with pytest.raises(SolveFailed, match="all but unbounded .* raise shrinkage") as caught:
+        QuarticModel(RHO)._surface(form, np.eye(3))
+    assert caught.value.best is form
 
 
 @pytest.mark.parametrize(

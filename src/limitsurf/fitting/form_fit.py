@@ -153,9 +153,8 @@ def linearised(form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool) -> 
     if offset:
         G = np.concatenate([G, -L.T @ basis.hessians(x, form.c)], axis=2)
         values = np.hstack([values, -basis.gradients(x) @ form.c])
-    motion = (G - along[:, :, None] * np.einsum("ni,nik->nk", along, G)[:, None]) / length[
-        :, None, None
-    ]
+    across = np.eye(3) - along[:, :, None] * along[:, None, :]
+    motion = across @ G / length[:, None, None]
     r, s = residuals(form, pairs)
     wr, ws = (np.sqrt(w) for w in _weights(r, s, pairs.weight, loss))
     load = values / (basis.degree * h)[:, None]
@@ -171,29 +170,24 @@ def residuals(form: FittedForm, pairs: Pairs) -> tuple[Array, Array]:
     return r, np.log(form.basis.values(x) @ form.c) / form.basis.degree
 
 
+def _sizes(r: Array, s: Array, loss: FormLoss) -> tuple[Array, Array]:
+    """Return the sizes of residuals in standard deviations of the noise."""
+    return np.linalg.norm(r, axis=1) / loss.motion_noise, np.abs(s) / loss.load_noise
+
+
 def _weights(r: Array, s: Array, weight: Array, loss: FormLoss) -> tuple[Array, Array]:
     """Return the weights of squares that touch Huber's loss from above at the residuals."""
-    found = []
-    for size, noise in (
-        (np.linalg.norm(r, axis=1), loss.motion_noise),
-        (np.abs(s), loss.load_noise),
-    ):
-        bend = loss.huber * noise / np.maximum(size, 1e-300)
-        found.append(weight * np.minimum(1.0, bend) / noise**2)
-    return found[0], found[1]
+    ur, us = _sizes(r, s, loss)
+    bend = [np.minimum(1.0, loss.huber / np.maximum(u, 1e-300)) for u in (ur, us)]
+    return weight * bend[0] / loss.motion_noise**2, weight * bend[1] / loss.load_noise**2
 
 
 def loss_value(form: FittedForm, pairs: Pairs, loss: FormLoss) -> float:
     """Return the sum that the fit minimises."""
-    r, s = residuals(form, pairs)
     total = 0.0
-    for size, noise in (
-        (np.linalg.norm(r, axis=1), loss.motion_noise),
-        (np.abs(s), loss.load_noise),
-    ):
-        u, k = size / noise, loss.huber
-        tail = np.minimum(u, k)
-        total += float(pairs.weight @ (tail * (u - 0.5 * tail)))
+    for u in _sizes(*residuals(form, pairs), loss):
+        square = np.minimum(u, loss.huber)  # beyond it the loss is linear
+        total += float(pairs.weight @ (square * (u - 0.5 * square)))
     away = form.c - form.basis.ball
     return total + 0.5 * loss.shrinkage * float(form.basis.norm @ away**2)
 
