@@ -200,7 +200,7 @@ def test_a_form_that_is_all_but_open_is_refused():
     basis = form_basis(4)
     thin = np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1e-5, 1e-5, 0.0]])  # (fx - fy)^2 + m^2
     form = FittedForm(basis, basis.substituted(basis.ball, thin), np.eye(3), np.zeros(3))
-    with pytest.raises(SolveFailed, match="all but unbounded .* raise shrinkage") as caught:
+    with pytest.raises(SolveFailed, match=r"all but unbounded .* raise shrinkage") as caught:
         QuarticModel(RHO)._surface(form, np.eye(3))
     assert caught.value.best is form
 
