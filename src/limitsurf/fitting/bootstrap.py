@@ -101,7 +101,9 @@ def bootstrap(
     """Fit a model to all pairs and to n samples of as many pairs, drawn with replacement.
 
     Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7 (1979). Pairs
-    are drawn whole, so that the errors of loads and motions stay together.
+    are drawn whole, so that the errors of loads and motions stay together. The bands show the
+    scatter of the fit, not its bias: of simulated ellipsoids (60 pairs, 10 % noise) bands named
+    90 % held the truth in 72 to 78 % of the cases.
 
     Parameters
     ----------
