@@ -1,0 +1,1 @@
+"""Limit surfaces fitted to measured loads and motions, as scikit-learn estimators."""
