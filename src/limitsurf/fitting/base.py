@@ -19,6 +19,7 @@ from sklearn.utils.validation import check_is_fitted
 from limitsurf.errors import InputError
 from limitsurf.fitting.columns import column_names, named_rows
 from limitsurf.fitting.pairs import Pairs, read_pairs, scaled_loads, scaled_motions
+from limitsurf.fitting.surface_files import surface_toml
 from limitsurf.sets.convex_set import ConvexSet
 
 __all__ = ["LimitSurfaceModel", "angles_between"]
@@ -93,7 +94,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             The program behind the fit did not converge.
         """
         if twists is None:
-            raise InputError("twists", "is None", remedy="requires y to be passed: give motions")
+            raise InputError("twists", "requires y to be passed, but the target y is None")
         pairs = read_pairs(
             loads,
             twists,
@@ -133,10 +134,17 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             warnings.warn(f"dropped {(~known).sum()} of {len(known)} pairs: NaN", stacklevel=2)
         return -float(np.average(angles[known], weights=weight[known]))
 
+    def to_toml(self) -> str:
+        """Return the fitted surface as the text of a model file; `load_surface` reads it."""
+        check_is_fitted(self)
+        pairs = f"fitted to {self.n_pairs_} pairs"
+        return surface_toml(self.surface_, self.rho, f"{type(self).__name__} {pairs}", pairs)
+
     def __sklearn_tags__(self) -> Any:
-        """Say that NaN may come in and three columns come out."""
+        """Say that NaN may come in, three columns come out, and the score is no R^2."""
         tags = super().__sklearn_tags__()
         tags.input_tags.allow_nan = True
         tags.target_tags.single_output = False
         tags.target_tags.multi_output = True
+        tags.regressor_tags.poor_score = True
         return tags

@@ -57,7 +57,7 @@ def named_rows(name: str, value: Any) -> Array:
         if set(names) <= set(found):
             columns = [_column(value, found[key]) for key in names]
             scales = [_scale(found[key], u) for key, u in zip(names, _UNITS[name], strict=True)]
-            return np.column_stack(columns) * np.array(scales)
+            return np.asarray(np.column_stack(columns) * np.array(scales))
     if titles and not _plain(value):
         wanted = " or ".join(", ".join(names) for names in _NAMES[name])
         raise InputError(name, f"has columns {', '.join(titles)}", remedy=f"name them {wanted}")

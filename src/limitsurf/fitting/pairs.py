@@ -31,7 +31,7 @@ class Pairs:
     motions : (n, 3) float
         Unit vectors along ``(vx, vy, rho omega)``.
     weight : (n,) float
-        Positive weights, of mean 1.
+        Positive weights; 2 counts like two pairs.
     rho : float
         The length that makes moments forces [m].
     """
@@ -112,7 +112,7 @@ def read_pairs(
             f"n_samples = {len(F)} usable pairs, but {least} is the minimum",
             remedy="measure more pairs, or fit a model with fewer parameters",
         )
-    return Pairs(F, v, weight / weight.mean(), rho)
+    return Pairs(F, v, weight, rho)
 
 
 def _rows(name: str, value: Any) -> Array:
@@ -130,6 +130,8 @@ def _weights(sample_weight: ArrayLike | None, n: int) -> Array:
         raise InputError("sample_weight", f"has shape {weight.shape}, not ({n},)")
     if not np.isfinite(weight).all() or (weight < 0.0).any():
         raise InputError("sample_weight", "must be finite and at least 0")
+    if n and not weight.any():
+        raise InputError("sample_weight", "all weights are zero")
     return weight
 
 
@@ -137,14 +139,15 @@ def _informative(F: Array, v: Array, weight: Array) -> tuple[Array, Array, Array
     unknown = ~(np.isfinite(F).all(axis=1) & np.isfinite(v).all(axis=1))
     unloaded = ~unknown & ~F.any(axis=1)
     still = ~unknown & ~unloaded & ~v.any(axis=1)
-    for drop, what in ((unknown, "NaN"), (unloaded, "no load"), (still, "no motion")):
-        _tell(drop, what)
+    _tell(unknown, "NaN")
+    _tell(unloaded, "no load")
+    _tell(still, "no motion")
     keep = ~(unknown | unloaded | still) & (weight > 0.0)
     return F[keep], v[keep], weight[keep]
 
 
 def _with_power(F: Array, v: Array, weight: Array) -> tuple[Array, Array, Array]:
-    brakes = np.asarray((F * v).sum(axis=1) < 0.0)
+    brakes = np.asarray((F * v).sum(axis=1)) < 0.0
     if len(F) and brakes.mean() > 0.5:
         raise InputError(
             "loads",
@@ -155,7 +158,7 @@ def _with_power(F: Array, v: Array, weight: Array) -> tuple[Array, Array, Array]
     return F[~brakes], v[~brakes], weight[~brakes]
 
 
-def _tell(drop: NDArray[np.bool_], what: str) -> None:
+def _tell(drop: Any, what: str) -> None:
     if drop.any():
         warnings.warn(f"dropped {drop.sum()} of {len(drop)} pairs: {what}", stacklevel=5)
 
