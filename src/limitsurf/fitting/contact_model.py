@@ -70,6 +70,8 @@ class ContactModel(LimitSurfaceModel):
         Contacts that carry [m].
     radii_ : (K,) float
         Their friction radii [N].
+    carries_ : (N,) bool
+        Which of the feet given, or of the grid's cells, carry.
     offset_ : (3,) float
         The load c [N, N, N m].
     noise_ : float
@@ -86,7 +88,7 @@ class ContactModel(LimitSurfaceModel):
 
     def __init__(
         self,
-        rho: float,
+        rho: float = 0.05,
         positions: ArrayLike | None = None,
         *,
         offset: bool = False,
@@ -124,9 +126,9 @@ class ContactModel(LimitSurfaceModel):
         if fit.motion_weight > 0.0:
             m = fit.with_motions(contacts, m, self.noise_)
         radii = m[: len(contacts)]
-        carries = radii > _NOTHING * radii.max(initial=0.0)
-        self.positions_ = contacts.places[carries] * pairs.rho
-        self.radii_ = radii[carries] * size
+        self.carries_ = radii > _NOTHING * radii.max(initial=0.0)
+        self.positions_ = contacts.places[self.carries_] * pairs.rho
+        self.radii_ = radii[self.carries_] * size
         self.offset_ = fit.offset_of(m, len(contacts)) * size * [1.0, 1.0, pairs.rho]
         return ContactSum(self.positions_, self.radii_, self.offset_)
 
