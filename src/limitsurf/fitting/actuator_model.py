@@ -25,7 +25,8 @@ class ActuatorModel(LimitSurfaceModel):
 
     .. math:: L = \sum_i G_i \{R_i a + m f_i : |f_i| \le 1\}
 
-    The load that a motion needs is linear in a and m: non-negative least squares, with Huber's loss.
+    The load that a motion needs is linear in a and m: non-negative least squares, with Huber's
+    loss.
 
     Parameters
     ----------

@@ -123,7 +123,9 @@ class ContactFit:
 
         lowest, around = value(m)
         for _ in range(_STEPS):
-            rows = (np.concatenate(part) for part in zip(in_loads.rows(m), around.rows(m)))
+            rows = (
+                np.concatenate(part) for part in zip(in_loads.rows(m), around.rows(m), strict=True)
+            )
             step = least_squares(*penalty.added_to(*rows), m) - m
             before, share = lowest, 1.0
             while share > _SHORTEST:

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 _REACH = 3.0  # radius of the grid in rho: feet of a part are seldom farther out
 _GAIN, _SHARPEN = 0.9, 0.25  # finer cells and a lower width must bring the noise below _GAIN
-_ENOUGH = 1e-7  # noise, a relative error of 0.03 % squared, below which nothing is refined
+_ENOUGH = 1e-8  # noise, a relative error of 0.01 % squared, below which nothing is refined
 _NOTHING = 1e-9  # weights below this, relative to the largest, carry nothing
 
 
@@ -95,7 +95,7 @@ class ContactModel(LimitSurfaceModel):
         balanced: bool = False,
         motion_weight: float = 3.0,
         huber: tuple[float, float] | None = (0.1, 0.15),
-        smoothing: float = 0.01,
+        smoothing: float = 0.005,
         width: float = 0.1,
         rings: int = 8,
         refine: int = 4,

@@ -3,8 +3,8 @@ r"""How loads and motions depend on the friction of contacts.
 A part that moves along v under contacts at :math:`r_k` of friction radii :math:`m_k` needs the load
 :math:`F = \sum m_k G_k e_k`, with :math:`e_k` the direction in which contact k slides: linear in m.
 The motion under a load F minimises :math:`h_m(v)` in the plane F.v = 1, and its slopes follow from
-the condition that the gradient stays along F. Where a contact is close to the centre of rotation the
-direction of its force is not determined: both are smoothed to a width, a speed.
+the condition that the gradient stays along F. Where a contact is close to the centre of rotation
+the direction of its force is not determined: both are smoothed to a width, a speed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _LIFT = 1e-3  # curvature, relative, that flat directions of h get: bounds the s
 def unit_rows(rows: Array) -> Array:
     """Return rows of length 1; zeros stay."""
     length = np.linalg.norm(rows, axis=1, keepdims=True)
-    return np.divide(rows, length, out=np.zeros_like(rows), where=length > 0.0)
+    return np.asarray(np.divide(rows, length, out=np.zeros_like(rows), where=length > 0.0))
 
 
 def _slips(v: Array, places: Array, width: float) -> tuple[Array, Array]:
@@ -53,12 +53,13 @@ def motions_under(loads: Array, places: Array, m: Array, width: float = _EXACT) 
 
     Loads of length zero get no motion.
     """
-    carries = m > 0.0
+    carries = np.flatnonzero(m > 0.0)
     contacts = np.ascontiguousarray(np.column_stack([places[carries], m[carries]]).T)
     F = unit_rows(loads)
+    moves = np.linalg.norm(F, axis=1, keepdims=True) > 0.0
     motion, error = np.empty((len(F), 3)), np.empty((len(F), 2))
     motions_on_rays(F, contacts, width, motion, error)
-    return np.asarray(motion * F.any(axis=1)[:, None])
+    return np.where(moves, motion, 0.0)
 
 
 def motion_slopes(
@@ -87,4 +88,4 @@ def _hessian(X: Array, places: Array, q: Array) -> Array:
     """Return ``sum q_k (G G' - X X')`` (n, 3, 3), from loads X (n, 3, N) of unit forces."""
     G = _loads(np.broadcast_to(np.eye(2)[:, :, None], (2, 2, len(places))), places)
     square = np.einsum("aik,ajk->kij", G, G).reshape(-1, 9)
-    return (q @ square).reshape(-1, 3, 3) - (q[:, None] * X) @ X.transpose(0, 2, 1)
+    return np.asarray((q @ square).reshape(-1, 3, 3) - (q[:, None] * X) @ X.transpose(0, 2, 1))

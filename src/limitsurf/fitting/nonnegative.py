@@ -4,8 +4,8 @@ r"""Non-negative weights from residuals in groups of three: least squares, or Hu
 
 with :math:`\ell_\delta(r) = r^2` up to :math:`\delta` and :math:`2 \delta r - \delta^2` beyond: a
 convex problem. Weights :math:`\min(1, \delta/r)` on groups that are far off turn it into least
-squares, again and again (iteratively reweighted), each solved by the active-set method of Lawson and
-Hanson (`scipy.optimize.nnls`) on the columns that may be in use.
+squares, again and again (iteratively reweighted), each solved by the active-set method of Lawson
+and Hanson (`scipy.optimize.nnls`) on the columns that may be in use.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def _small(X: Array, y: Array, strength: Array) -> Array:
     """Solve the program for few columns, reduced to as many rows by QR."""
     count = X.shape[1]
     if len(X) > 2 * count:
-        R = np.linalg.qr(np.column_stack([X, y]), mode="r")
+        R = np.asarray(np.linalg.qr(np.column_stack([X, y]), mode="r"))
         X, y = R[:, :count], R[:, count]
     if strength.any():
         X, y = np.vstack([X, np.diag(strength)]), np.concatenate([y, np.zeros(count)])

@@ -28,7 +28,7 @@ _ROUNDS, _ALLOWED = 60, 1e-7  # rounds of new conditions; what is left, relative
 
 
 def violations(points: Array, motions: Array, symmetric: bool) -> tuple[Array, Array]:
-    """Return how far -x_j (first) and x_j stick out along v_i, (n, n) each; -inf where not asked."""
+    """Return how far -x_j, if symmetric, and x_j stick out beyond x_i along v_i, (n, n) each."""
     heights = motions @ points.T
     own = np.diag(heights)[:, None]
     plus = heights - own

@@ -5,8 +5,8 @@ m_i\}`, at :math:`s F` with :math:`s = \min \{h(v) : F \cdot v = 1\}`,
 :math:`h(v) = \sum m_i |G_i^T v|`, and moves it along the minimiser v, an outer normal there (the
 dual of the gauge of B; Rockafellar, Convex Analysis, section 15). In the plane :math:`v = F + P z`
 this is a convex problem in two unknowns. It is solved by Newton's method, h smoothed to
-:math:`\sum m_i \sqrt{|u_i|^2 + \epsilon^2}` and epsilon falling: kinks, where a contact is the centre
-of rotation, are then approached from their inside.
+:math:`\sum m_i \sqrt{|u_i|^2 + \epsilon^2}` and epsilon falling: kinks, where a contact is the
+centre of rotation, are then approached from their inside.
 
 Forces :math:`f_i = m_i u_i / \sqrt{|u_i|^2 + \epsilon^2}` lie in their disks, so their load lies in
 B: its part along F against h(v), and its part across, prove how good the answer is.
