@@ -10,10 +10,12 @@ and Hanson (`scipy.optimize.nnls`) on the columns that may be in use.
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import nnls
 
 from limitsurf.errors import SolveFailed
@@ -122,11 +124,12 @@ def least_squares(X: Array, y: Array, strength: Array, start: Array) -> Array:
         Columns enter without end, or `scipy.optimize.nnls` does not end.
     """
     least = _STILL * np.linalg.norm(X, axis=0) * np.linalg.norm(y)
-    m, used = np.zeros(X.shape[1]), np.flatnonzero(start > 0.0)
+    gram = (X.T @ X, X.T @ y) if len(X) > 2 * X.shape[1] else None
+    used = np.flatnonzero(start > 0.0)
     for _ in range(_ENTRIES):
         m = np.zeros(X.shape[1])
         if len(used):
-            m[used] = _small(X[:, used], y, strength[used])
+            m[used] = _of_columns(X, y, strength, gram, used)
         fall = X.T @ (y - X @ m) - strength**2 * m
         fall[used] = 0.0
         enter = np.flatnonzero(fall > least)
@@ -137,16 +140,22 @@ def least_squares(X: Array, y: Array, strength: Array, start: Array) -> Array:
     raise SolveFailed("fit: non-negative weights did not settle; give more smoothing", best=m)
 
 
-def _small(X: Array, y: Array, strength: Array) -> Array:
-    """Solve the program for few columns, reduced to as many rows by QR."""
-    count = X.shape[1]
-    if len(X) > 2 * count:
-        R = np.asarray(np.linalg.qr(np.column_stack([X, y]), mode="r"))
-        X, y = R[:, :count], R[:, count]
-    if strength.any():
-        X, y = np.vstack([X, np.diag(strength)]), np.concatenate([y, np.zeros(count)])
+def _of_columns(
+    X: Array, y: Array, strength: Array, gram: tuple[Array, Array] | None, used: NDArray[np.intp]
+) -> Array:
+    """Solve the program for the columns used, by the Cholesky factor of their Gram matrix if given.
+
+    Where that is singular, and for few rows, by the rows themselves.
+    """
+    ridge = np.diag(strength[used])
+    rows, target = np.vstack([X[:, used], ridge]), np.concatenate([y, np.zeros(len(used))])
+    if gram is not None:
+        G, g = gram
+        with contextlib.suppress(np.linalg.LinAlgError):
+            R = cholesky(G[np.ix_(used, used)] + ridge**2)
+            rows, target = R, solve_triangular(R, g[used], trans="T")
     try:
-        return np.asarray(nnls(X, y, maxiter=30 * count)[0])
+        return np.asarray(nnls(rows, target, maxiter=30 * len(used))[0])
     except RuntimeError as error:
         raise SolveFailed(
             "fit: non-negative least squares did not end; give more smoothing", best=None
