@@ -67,21 +67,25 @@ def motion_slopes(
 ) -> tuple[Array, Array, Array]:
     """Return unit motions (n, 3) under loads F, and their slopes in m (n, 3, N) and F (n, 3, 3).
 
-    With P an orthonormal basis across F, H the Hessian of ``h_m`` and s F on the boundary, the
-    motion v in the plane F.v = 1 obeys ``P' H P dz + P' dg = s P' dF``, ``dv = P dz``.
+    For F of length 1, P an orthonormal basis across it, g and H the gradient and Hessian of
+    ``h_m``, the motion v in the plane F.v = 1 obeys ``P'g = 0``. From ``F.dv = -v.dF``,
+    ``dv = P dz - F (v.dF)``, follows ``P' (H dv + dg) = (F.g) P' dF``.
     """
     v = motions_under(loads, places, m, width)
     e, speed = _slips(v, places, width)
-    X = _loads(e, places)
-    P = np.linalg.svd(unit_rows(loads)[:, None, :])[2][:, 1:]
-    A = P @ _hessian(X, places, m / speed) @ P.transpose(0, 2, 1)
+    X, F = _loads(e, places), unit_rows(loads)
+    H = _hessian(X, places, m / speed)
+    P = np.linalg.svd(F[:, None, :])[2][:, 1:]
+    A = P @ H @ P.transpose(0, 2, 1)
     lift = _LIFT * np.trace(A, axis1=1, axis2=2) + np.finfo(np.float64).tiny
     K = P.transpose(0, 2, 1) @ np.linalg.solve(A + lift[:, None, None] * np.eye(2), P)
     size = np.maximum(np.linalg.norm(v, axis=1), np.finfo(np.float64).tiny)
     unit = v / size[:, None]
-    turn = (np.eye(3) - unit[:, :, None] * unit[:, None, :]) @ K / size[:, None, None]
-    s = (speed @ m) / np.linalg.norm(loads, axis=1)
-    return unit, -turn @ X, s[:, None, None] * turn
+    turn = (np.eye(3) - unit[:, :, None] * unit[:, None, :]) / size[:, None, None]
+    across = P.transpose(0, 2, 1) @ P / np.linalg.norm(loads, axis=1)[:, None, None]
+    strength = ((X @ m) * F).sum(axis=1)[:, None, None] * np.eye(3)
+    plane = F[:, :, None] * v[:, None, :]
+    return unit, -turn @ K @ X, turn @ (K @ (strength + H @ plane) - plane) @ across
 
 
 def _hessian(X: Array, places: Array, q: Array) -> Array:

@@ -24,7 +24,7 @@ from limitsurf.kernels.vectors import Vector, along, dot
 
 __all__ = ["motions_on_rays"]
 
-_STEPS, _HALVINGS = 30, 30
+_STEPS, _HALVINGS, _POLISH = 30, 30, 5
 
 
 @compiled
@@ -104,6 +104,22 @@ def _settle(contacts: Floats, v: Vector, p: Vector, q: Vector, eps: float) -> Ve
 
 
 @compiled
+def _polish(contacts: Floats, v: Vector, p: Vector, q: Vector, eps: float) -> Vector:
+    """Take Newton's steps that balance the load better, where h no longer tells: near kinks."""
+    _, g, H, _ = _sums(contacts, v, eps)
+    off = math.hypot(dot(g, p), dot(g, q))
+    for _ in range(_POLISH):
+        step, _ = _newton_step(g, H, p, q)
+        trial = along(v, 1.0, step)
+        _, g, H, _ = _sums(contacts, trial, eps)
+        left = math.hypot(dot(g, p), dot(g, q))
+        if not left < 0.5 * off:
+            break
+        v, off = trial, left
+    return v
+
+
+@compiled
 def motions_on_rays(
     loads: Floats, contacts: Floats, width: float, motion: Floats, error: Floats
 ) -> None:
@@ -131,6 +147,7 @@ def motions_on_rays(
             if eps <= width:
                 break
             eps *= 0.2
+        v = _polish(contacts, v, p, q, width)
         _, f, _, h = _sums(contacts, v, width)
         motion[k, 0], motion[k, 1], motion[k, 2] = v
         s = dot(f, F)
