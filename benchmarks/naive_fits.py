@@ -7,9 +7,8 @@ from itertools import combinations_with_replacement
 import cvxpy as cp
 import numpy as np
 
-from limitsurf.fitting.form_fit import loss_value, residuals
-
-FLOOR = 1e-6  # least eigenvalue of the Gram matrix, as in limitsurf.conic.convex_form
+from limitsurf.conic.convex_form import FLOOR
+from limitsurf.fitting.form_fit import linearised, loss_value, residuals
 
 
 def naive_step(form, pairs, loss):
@@ -40,6 +39,19 @@ def naive_step(form, pairs, loss):
     return c.value
 
 
+def stacked_step(form, pairs, loss):
+    """Return the same by one matrix of all residuals: cvxpy as its guide advises."""
+    J, r = linearised(form, pairs, loss, False)
+    c = cp.Variable(len(form.c))
+    prior = np.sqrt(loss.shrinkage * form.basis.norm)
+    away = cp.multiply(prior, c - form.basis.ball)
+    objective = 0.5 * cp.sum_squares(J @ c + r) + 0.5 * cp.sum_squares(away)
+    cp.Problem(cp.Minimize(objective), convexity(c, form.basis.degree)).solve(
+        solver=cp.CLARABEL, tol_gap_abs=1e-9, tol_gap_rel=1e-9, tol_feas=1e-9
+    )
+    return c.value
+
+
 def convexity(c, degree):
     """Return constraints: the Hessian form of c is ``z'Qz``, monomial by monomial, Q >= FLOOR."""
     powers = [
@@ -62,7 +74,7 @@ def convexity(c, degree):
                 if factor > 0:
                     hessian[tuple(sorted((i, k))), tuple(left)].append(factor * c[n])
     matched = [sum(terms) == sum(hessian[key]) for key, terms in gram.items()]
-    return [Q - FLOOR * np.eye(len(basis)) >> 0, *matched]
+    return [Q - FLOOR[degree] * np.eye(len(basis)) >> 0, *matched]
 
 
 def naive_fit(form, pairs, loss, steps):

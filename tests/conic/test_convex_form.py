@@ -4,7 +4,6 @@ import pytest
 from naive_fits import convexity
 
 from limitsurf.conic.convex_form import (
-    FLOOR,
     form_exponents,
     hessian_squares,
     minimize_over_convex_forms,
@@ -37,7 +36,7 @@ def test_minimum_is_that_of_the_plain_statement(degree, free, rng):
     found = minimize_over_convex_forms(J.T @ J, J.T @ r, degree)
     x = cp.Variable(m + free)
     program = cp.Problem(cp.Minimize(0.5 * cp.sum_squares(J @ x + r)), convexity(x[:m], degree))
-    program.solve(solver=cp.CLARABEL, tol_gap_abs=1e-9, tol_gap_rel=1e-9, tol_feas=1e-9)
+    program.solve(solver=cp.CLARABEL)
     value = 0.5 * np.sum((J @ found + r) ** 2)
     assert value == pytest.approx(program.value, rel=1e-7)
     np.testing.assert_allclose(found, x.value, atol=1e-4)
@@ -55,5 +54,5 @@ def test_the_answer_is_convex_where_the_best_form_is_not(rng):
 def test_a_convex_form_is_left_alone():
     target = np.array([1.0, 0.2, 0.0, 2.0, 0.1, 3.0])  # positive definite
     np.testing.assert_allclose(
-        minimize_over_convex_forms(np.eye(6), -target, 2), target, atol=10 * FLOOR
+        minimize_over_convex_forms(np.eye(6), -target, 2), target, atol=1e-12
     )

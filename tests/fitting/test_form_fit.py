@@ -53,7 +53,7 @@ def test_the_program_has_the_slope_of_the_loss(degree, offset, rng):
     m, h = len(form.c), 1e-6
     slope = P @ np.concatenate([form.c, np.zeros(len(q) - m)]) + q
     for k, e in enumerate(h * np.eye(len(q))):
-        center = e[m:] if offset else np.zeros(3)
+        center = np.linalg.solve(form.frame, e[m:]) if offset else np.zeros(3)
         moved = [
             replace(form, c=form.c + s * e[:m], center=form.center + s * center) for s in (-1, 1)
         ]

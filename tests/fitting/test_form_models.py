@@ -7,6 +7,8 @@ from limitsurf.contacts.contact_set import ContactSet
 from limitsurf.errors import InputError, SolveFailed
 from limitsurf.fitting.base import angles_between
 from limitsurf.fitting.ellipsoid_model import EllipsoidModel
+from limitsurf.fitting.form_fit import FittedForm
+from limitsurf.fitting.forms import form_basis
 from limitsurf.fitting.pairs import scaled_motions
 from limitsurf.fitting.quartic_model import QuarticModel
 from limitsurf.fitting.surface_files import load_surface
@@ -23,10 +25,10 @@ MODELS = [EllipsoidModel, QuarticModel]
 FEET = [[0.05, 0.0], [-0.03, 0.04], [-0.02, -0.04]]
 
 
-def quartic_surface():
-    """Return a convex quartic, skew to the axes, that no ellipsoid comes near."""
-    E = [[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 2, 0], [2, 0, 2], [1, 0, 3]]
-    centred = PolynomialSet(E, [1.0, 0.5, 1.0, 0.2, 0.4, 0.2])
+def quartic_surface(flat=False):
+    """Return a quartic, skew to the axes, that no ellipsoid comes near; `flat` where y = m = 0."""
+    E = [[4, 0, 0], [0, 4, 0], [0, 0, 4], [2, 2, 0], [2, 0, 2], [1, 0, 3], [0, 2, 2]]
+    centred = PolynomialSet(E, [1.0, 0.5, 1.0, 0.2, 0.4, 0.2, 0.0 if flat else 0.3])
     return LinearImage(AXES, centred)
 
 
@@ -43,14 +45,18 @@ def test_ellipsoids_are_recovered(model, center, rng):
 
 
 @pytest.mark.parametrize("center", [None, OFFSET])
-def test_quartics_are_recovered(center, rng):
-    true = (
-        quartic_surface() if center is None else LinearImage(np.eye(3), quartic_surface(), center)
-    )
+@pytest.mark.parametrize("flat", [False, True])
+def test_quartics_are_recovered(center, flat, rng):
+    """On the edge of the cone of convex forms, solver and floor leave a relative 1e-4."""
+    true = quartic_surface(flat)
+    if center is not None:
+        true = LinearImage(np.eye(3), true, center)
     loads, twists = pairs_of(true, 60)
     fit = QuarticModel(RHO, offset=center is not None, shrinkage=0.0).fit(loads, twists)
     d = rng.normal(size=(50, 3)) * [1.0, 1.0, 20.0]
-    np.testing.assert_allclose(fit.surface_.support(d), true.support(d), rtol=1e-5)
+    size = np.abs(true.support(d)).max()
+    error = np.abs(fit.surface_.support(d) - true.support(d)).max()
+    assert error < (1e-4 if flat else 1e-6) * size
     ellipsoid = EllipsoidModel(RHO, offset=center is not None).fit(loads, twists)
     assert ellipsoid.score(loads, twists) < -0.1
     assert isinstance(fit.surface_, PolynomialSet if center is None else LinearImage)
@@ -62,7 +68,7 @@ def test_without_noise_the_defaults_hardly_shrink(model, rng):
     fit = model(RHO).fit(*pairs_of(true, 60))
     d = rng.normal(size=(50, 3)) * [1.0, 1.0, 20.0]
     np.testing.assert_allclose(fit.surface_.support(d), true.support(d), rtol=2e-3)
-    assert fit.motion_noise_ < 0.02
+    assert fit.motion_noise_ < 0.04
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -177,6 +183,26 @@ def test_predictions_of_nothing_and_of_unknown(model):
     assert np.isnan(found[1]).all()
     assert np.linalg.norm(found[2]) == pytest.approx(1.0)
     assert isinstance(fit.surface_, ConvexSet)
+
+
+def test_scores_leave_out_what_is_unknown():
+    loads, twists = pairs_of(ContactSet(FEET, 1.0).limit_surface(), 20)
+    fit = EllipsoidModel(RHO).fit(loads, twists)
+    expected = fit.score(loads[1:], twists[1:])
+    loads[0, 0] = np.nan
+    with pytest.warns(UserWarning, match="dropped 1 of 20 pairs: NaN"):
+        assert fit.score(loads, twists) == pytest.approx(expected, rel=1e-12)
+    with pytest.raises(InputError, match="no pair without NaN"):
+        fit.score(loads[:1], twists[:1])
+
+
+def test_a_form_that_is_all_but_open_is_refused():
+    basis = form_basis(4)
+    thin = np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1e-5, 1e-5, 0.0]])  # (fx - fy)^2 + m^2
+    form = FittedForm(basis, basis.substituted(basis.ball, thin), np.eye(3), np.zeros(3))
+    with pytest.raises(SolveFailed, match=r"all but unbounded .* raise shrinkage") as caught:
+        QuarticModel(RHO)._surface(form, np.eye(3))
+    assert caught.value.best is form
 
 
 @pytest.mark.parametrize(

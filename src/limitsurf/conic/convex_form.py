@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
+from limitsurf.conic.form import unpacking
 from limitsurf.errors import SolveFailed
 
 __all__ = ["FLOOR", "form_exponents", "hessian_squares", "minimize_over_convex_forms"]
@@ -23,8 +24,9 @@ __all__ = ["FLOOR", "form_exponents", "hessian_squares", "minimize_over_convex_f
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
-#: Least eigenvalue of Q; more than solver tolerance, so that what comes out is certified convex.
-FLOOR = 1e-6
+#: Least eigenvalue of Q by degree. More than solver tolerance, so that what comes out is certified
+#: convex; and no ellipsoid is longer than a hundred units, where data say nothing of its length.
+FLOOR = {2: 1e-4, 4: 1e-6}
 
 _TOLERANCES = 1e-9, 1e-8  # the second where rounding stops the first
 
@@ -59,14 +61,27 @@ def minimize_over_convex_forms(P: Array, q: Array, degree: int, n: int = 3) -> A
     quadratic = sparse.block_diag([np.triu(P / size), sparse.csc_matrix((free, free))], "csc")
     A = sparse.csc_matrix(-np.hstack([S, np.zeros((len(S), k)), N]))
     order = _order(len(S))
-    b = -FLOOR * _triangle(np.eye(order))
+    b = -FLOOR[degree] * _triangle(np.eye(order))
     linear = np.concatenate([q / size, np.zeros(free)])
     for tolerance in _TOLERANCES:
         cones = [clarabel.PSDTriangleConeT(order)]
         raw = clarabel.DefaultSolver(quadratic, linear, A, b, cones, _settings(tolerance)).solve()
         if str(raw.status) in ("Solved", "AlmostSolved"):
-            return np.array(raw.x)[: len(q)]
+            return _polished(P, q, np.array(raw.x), degree, n)
     raise SolveFailed(f"convex form: Clarabel ended with {raw.status}", best=np.array(raw.x))
+
+
+def _polished(P: Array, q: Array, found: Array, degree: int, n: int) -> Array:
+    """Return the minimum without the cone, if the Gram matrix found shows that it lies inside.
+
+    A solver that closes its gap to 1e-9 knows the minimiser only to the root of that.
+    """
+    S, N = hessian_squares(n, degree)
+    free = np.asarray(linalg.lstsq(P, -q)[0])
+    Q = S @ free[: S.shape[1]] + N @ found[len(q) :]
+    order = _order(len(S))
+    inside = np.linalg.eigvalsh((unpacking(order) @ Q).reshape(order, order))[0] >= FLOOR[degree]
+    return free if inside else found[: len(q)]
 
 
 def _settings(tolerance: float):  # type: ignore[no-untyped-def]

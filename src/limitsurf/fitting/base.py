@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from abc import abstractmethod
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -77,9 +77,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     def _passive(self) -> bool:
         return True
 
-    def fit(
-        self, loads: Any, twists: Any = None, sample_weight: ArrayLike | None = None
-    ) -> LimitSurfaceModel:
+    def fit(self, loads: Any, twists: Any = None, sample_weight: ArrayLike | None = None) -> Self:
         """Fit the limit surface to pairs of loads and motions.
 
         Parameters
@@ -135,6 +133,8 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         angles = angles_between(self.predict(loads), scaled_motions(twists, self._length))
         weight = np.ones(len(angles)) if sample_weight is None else np.asarray(sample_weight)
         known = np.isfinite(angles)
+        if not known.any():
+            raise InputError("loads", "has no pair without NaN")
         if not known.all():
             warnings.warn(f"dropped {(~known).sum()} of {len(known)} pairs: NaN", stacklevel=2)
         return -float(np.average(angles[known], weights=weight[known]))

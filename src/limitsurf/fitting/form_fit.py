@@ -25,7 +25,15 @@ from limitsurf.errors import SolveFailed
 from limitsurf.fitting.forms import FormBasis
 from limitsurf.fitting.pairs import Pairs
 
-__all__ = ["FittedForm", "FormLoss", "fit_form", "loss_value", "normal_equations", "residuals"]
+__all__ = [
+    "FittedForm",
+    "FormLoss",
+    "fit_form",
+    "linearised",
+    "loss_value",
+    "normal_equations",
+    "residuals",
+]
 
 Array = NDArray[np.float64]
 
@@ -120,8 +128,8 @@ def fit_form(
 def normal_equations(
     form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
 ) -> tuple[Array, Array]:
-    """Return P and q of one step: the loss near `form` is ``1/2 x'Px + q.x``, ``x = (c, da)``."""
-    J, r = _linearised(form, pairs, loss, offset)
+    """Return P and q of one step: the loss near `form` is ``1/2 x'Px + q.x``, ``x = (c, L da)``."""
+    J, r = linearised(form, pairs, loss, offset)
     P, q = J.T @ J, J.T @ r
     m = len(form.c)
     prior = loss.shrinkage * form.basis.norm
@@ -130,10 +138,8 @@ def normal_equations(
     return P, q
 
 
-def _linearised(
-    form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool
-) -> tuple[Array, Array]:
-    """Return J and r: weighted residuals near `form` are ``J (c, da) + r``.
+def linearised(form: FittedForm, pairs: Pairs, loss: FormLoss, offset: bool) -> tuple[Array, Array]:
+    """Return J and r: weighted residuals near `form` are ``J (c, L da) + r``.
 
     The direction g/|g| does not change with the size of c, so that ``J c`` vanishes at `form`.
     """
@@ -145,12 +151,10 @@ def _linearised(
     length = np.linalg.norm(g, axis=1)
     along = g / length[:, None]
     if offset:
-        curvature = L.T @ basis.hessians(x, form.c) @ L
-        G = np.concatenate([G, -curvature], axis=2)
-        values = np.hstack([values, -g])
-    motion = (G - along[:, :, None] * np.einsum("ni,nik->nk", along, G)[:, None]) / length[
-        :, None, None
-    ]
+        G = np.concatenate([G, -L.T @ basis.hessians(x, form.c)], axis=2)
+        values = np.hstack([values, -basis.gradients(x) @ form.c])
+    across = np.eye(3) - along[:, :, None] * along[:, None, :]
+    motion = across @ G / length[:, None, None]
     r, s = residuals(form, pairs)
     wr, ws = (np.sqrt(w) for w in _weights(r, s, pairs.weight, loss))
     load = values / (basis.degree * h)[:, None]
@@ -166,29 +170,24 @@ def residuals(form: FittedForm, pairs: Pairs) -> tuple[Array, Array]:
     return r, np.log(form.basis.values(x) @ form.c) / form.basis.degree
 
 
+def _sizes(r: Array, s: Array, loss: FormLoss) -> tuple[Array, Array]:
+    """Return the sizes of residuals in standard deviations of the noise."""
+    return np.linalg.norm(r, axis=1) / loss.motion_noise, np.abs(s) / loss.load_noise
+
+
 def _weights(r: Array, s: Array, weight: Array, loss: FormLoss) -> tuple[Array, Array]:
     """Return the weights of squares that touch Huber's loss from above at the residuals."""
-    found = []
-    for size, noise in (
-        (np.linalg.norm(r, axis=1), loss.motion_noise),
-        (np.abs(s), loss.load_noise),
-    ):
-        bend = loss.huber * noise / np.maximum(size, 1e-300)
-        found.append(weight * np.minimum(1.0, bend) / noise**2)
-    return found[0], found[1]
+    ur, us = _sizes(r, s, loss)
+    bend = [np.minimum(1.0, loss.huber / np.maximum(u, 1e-300)) for u in (ur, us)]
+    return weight * bend[0] / loss.motion_noise**2, weight * bend[1] / loss.load_noise**2
 
 
 def loss_value(form: FittedForm, pairs: Pairs, loss: FormLoss) -> float:
     """Return the sum that the fit minimises."""
-    r, s = residuals(form, pairs)
     total = 0.0
-    for size, noise in (
-        (np.linalg.norm(r, axis=1), loss.motion_noise),
-        (np.abs(s), loss.load_noise),
-    ):
-        u, k = size / noise, loss.huber
-        tail = np.minimum(u, k)
-        total += float(pairs.weight @ (tail * (u - 0.5 * tail)))
+    for u in _sizes(*residuals(form, pairs), loss):
+        square = np.minimum(u, loss.huber)  # beyond it the loss is linear
+        total += float(pairs.weight @ (square * (u - 0.5 * square)))
     away = form.c - form.basis.ball
     return total + 0.5 * loss.shrinkage * float(form.basis.norm @ away**2)
 
@@ -198,7 +197,8 @@ def _shortened(form: FittedForm, step: Array, pairs: Pairs, loss: FormLoss) -> F
     m, share = len(form.c), 1.0
     while True:
         move = share * step
-        center = form.center + (move[m:] if len(move) > m else 0.0)
+        away = np.linalg.solve(form.frame, move[m:]) if len(move) > m else 0.0
+        center = form.center + away
         new = replace(form, c=form.c + move[:m], center=center)
         new = replace(new, value=loss_value(new, pairs, loss))
         if new.value <= form.value or share < _SHORTEST:

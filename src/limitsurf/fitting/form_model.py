@@ -47,7 +47,7 @@ class FormModel(LimitSurfaceModel):
         load_noise: float | None = None,
         huber: float = 1.345,
         shrinkage: float = 1.0,
-        max_iter: int = 1000,
+        max_iter: int = 2000,
     ) -> None:
         self.rho = rho
         self.offset = offset

@@ -75,7 +75,7 @@ def read_pairs(
     """Check, clean and scale measured pairs.
 
     Pairs that say nothing are dropped with a warning that counts them: those with NaN, without
-    load or motion, and, for `passive` contacts, those in which the load brakes (negative power).
+    motion, and, for `passive` contacts, without load or with one that brakes (negative power).
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def read_pairs(
     if len(F) != len(v):
         raise InputError("twists", f"has {len(v)} rows, but loads has {len(F)}")
     weight = _weights(sample_weight, len(F))
-    F, v, weight = _informative(F, v, weight)
+    F, v, weight = _informative(F, v, weight, passive)
     if passive:
         _check_units(F, v)
         F, v, weight = _with_power(F, v, weight)
@@ -135,9 +135,9 @@ def _weights(sample_weight: ArrayLike | None, n: int) -> Array:
     return weight
 
 
-def _informative(F: Array, v: Array, weight: Array) -> tuple[Array, Array, Array]:
+def _informative(F: Array, v: Array, weight: Array, passive: bool) -> tuple[Array, Array, Array]:
     unknown = ~(np.isfinite(F).all(axis=1) & np.isfinite(v).all(axis=1))
-    unloaded = ~unknown & ~F.any(axis=1)
+    unloaded = ~unknown & ~F.any(axis=1) & passive  # active contacts move an unloaded part
     still = ~unknown & ~unloaded & ~v.any(axis=1)
     _tell(unknown, "NaN")
     _tell(unloaded, "no load")
@@ -176,7 +176,8 @@ def _check_units(F: Array, v: Array) -> None:
         raise InputError(
             "loads",
             f"moments weigh {ratio:.3g} times as much in the loads as rotations do in the motions",
-            remedy="give moments in N m, translations in m, angles in rad, and rho in m",
+            remedy="give moments in N m, translations in m, angles in rad, rho in m and near the "
+            "size of the support",
         )
 
 

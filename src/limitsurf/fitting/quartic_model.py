@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from limitsurf.errors import InputError, SolveFailed
 from limitsurf.fitting.form_fit import FittedForm, FormLoss
 from limitsurf.fitting.form_model import FormModel
 from limitsurf.fitting.form_stages import fit_quartic
@@ -67,5 +68,12 @@ class QuarticModel(FormModel):
 
     def _surface(self, form: FittedForm, to_newtons: Array) -> ConvexSet:
         coefficients = form.basis.substituted(form.c, form.frame @ to_newtons)
-        centred = PolynomialSet(form.basis.exponents, coefficients)
+        try:
+            centred = PolynomialSet(form.basis.exponents, coefficients)
+        except InputError as error:
+            raise SolveFailed(
+                f"the pairs leave the surface all but unbounded ({error}); measure pushes in other "
+                "directions, or raise shrinkage",
+                best=form,
+            ) from error
         return LinearImage(np.eye(3), centred, self.offset_) if self.offset else centred

@@ -22,6 +22,7 @@ __all__ = ["load_surface", "surface_toml"]
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
+Triple = tuple[float, float, float]
 
 _HEAD = """description = {description}
 
@@ -40,14 +41,14 @@ source = {source}
 class EllipsoidTable(Model):
     """The set ``{center + axes u : |u| <= 1}``."""
 
-    center: list[float]
+    center: Triple
     axes: Rows
 
 
 class QuarticTable(Model):
     """The set ``{center + x : sum_k coefficients_k x^exponents_k <= 1}``."""
 
-    center: list[float]
+    center: Triple
     exponents: list[list[int]]
     coefficients: list[float]
 
@@ -55,7 +56,7 @@ class QuarticTable(Model):
 class ContactsTable(Model):
     """Contacts with friction, as in `ContactSum`; positions in units of rho."""
 
-    center: list[float]
+    center: Triple
     position: Rows
     radius: list[float]
 
@@ -134,8 +135,8 @@ def load_surface(path: str | Path) -> ConvexSet:
         raise ModelError(path, "", f"describes {len(given)} surfaces", remedy="keep one table")
     try:
         return _surface(getattr(file, given[0]), unit, rho)
-    except InputError as error:
-        raise ModelError(path, f"{given[0]}.{error.argument}", error.problem) from error
+    except ValueError as error:  # rows of different lengths, or what the sets refuse
+        raise ModelError(path, given[0], str(error)) from error
 
 
 def _value(given: Sourced) -> float:
@@ -166,7 +167,7 @@ def _table(surface: ConvexSet, unit: Array, rho: float) -> tuple[str, dict[str, 
 def _surface(table: Model, unit: Array, rho: float) -> ConvexSet:
     match table:
         case EllipsoidTable():
-            return Ellipsoid(table.center * unit, np.array(table.axes) * unit[:, None])
+            return Ellipsoid(np.array(table.center) * unit, np.array(table.axes) * unit[:, None])
         case QuarticTable():
             powers = np.prod(unit ** np.array(table.exponents), axis=1)
             centred = PolynomialSet(table.exponents, table.coefficients / powers)
@@ -174,7 +175,9 @@ def _surface(table: Model, unit: Array, rho: float) -> ConvexSet:
             return LinearImage(np.eye(3), centred, offset) if offset.any() else centred
         case ContactsTable():
             places = np.array(table.position).reshape(-1, 2) * rho
-            return ContactSum(places, np.array(table.radius) * unit[0], table.center * unit)
+            return ContactSum(
+                places, np.array(table.radius) * unit[0], np.array(table.center) * unit
+            )
         case PolytopeTable():
             return VPolytope(np.array(table.vertices) * unit)
     raise AssertionError(table)
