@@ -77,6 +77,11 @@ class ContactModel(LimitSurfaceModel):
     noise_ : float
         Estimated loss per pair of the loads alone, relative to their typical size squared.
 
+    Notes
+    -----
+    Weights of pairs are relative: they do not tell how many pairs there are, of which the estimated
+    noise, and so the smoothing, depends.
+
     Examples
     --------
     >>> v = np.random.default_rng(0).normal(size=(40, 3))

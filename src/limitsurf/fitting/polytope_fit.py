@@ -24,7 +24,8 @@ __all__ = ["consistent_points", "violations"]
 
 Array = NDArray[np.float64]
 
-_ROUNDS, _ALLOWED = 60, 1e-7  # rounds of new conditions; what is left, relative to the loads
+_ROUNDS, _AT_ONCE = 200, 4  # rounds of new conditions, and of each point in each
+_ALLOWED = 1e-6  # what may be left, relative to the loads
 
 
 def violations(points: Array, motions: Array, symmetric: bool) -> tuple[Array, Array]:
@@ -57,13 +58,14 @@ def consistent_points(loads: Array, motions: Array, weight: Array, symmetric: bo
 
 
 def _most_violated(points: Array, motions: Array, symmetric: bool) -> set[tuple[int, int, int]]:
-    """Return, for each i, the worst j with its sign, if it is violated."""
+    """Return, for each i and sign, the j that stick out most."""
     found = set()
-    signs = zip((-1, 1), violations(points, motions, symmetric), strict=True)
-    for sign, over in signs:
-        worst = np.argmax(over, axis=1)
-        out = over[np.arange(len(over)), worst] > _ALLOWED
-        found |= {(int(i), int(worst[i]), sign) for i in np.flatnonzero(out)}
+    for sign, over in zip((-1, 1), violations(points, motions, symmetric), strict=True):
+        worst = np.argsort(over, axis=1)[:, -_AT_ONCE:]
+        i = np.repeat(np.arange(len(over)), worst.shape[1])
+        j = worst.ravel()
+        out = over[i, j] > _ALLOWED
+        found |= {(int(a), int(b), sign) for a, b in zip(i[out], j[out], strict=True)}
     return found
 
 
