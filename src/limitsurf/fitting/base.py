@@ -65,6 +65,11 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         """Return outer normals (n, 3) of B, any length, for loads ``(fx, fy, m/rho)`` [N]."""
 
     @property
+    def _length(self) -> float:
+        """The length that makes moments forces [m]."""
+        return self.rho
+
+    @property
     def _least_pairs(self) -> int:
         return 1
 
@@ -97,7 +102,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             loads,
             twists,
             sample_weight,
-            self.rho,
+            self._length,
             least=self._least_pairs,
             passive=self._passive,
         )
@@ -110,7 +115,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     def predict(self, loads: Any) -> Array:
         """Return unit vectors along ``(vx, vy, rho omega)`` (n, 3); zeros where nothing pulls."""
         check_is_fitted(self)
-        rows = scaled_loads(loads, self.rho)
+        rows = scaled_loads(loads, self._length)
         known = np.isfinite(rows).all(axis=1)
         found = np.full_like(rows, np.nan)
         normals = self._directions(rows[known]) if known.any() else rows[known]
@@ -125,7 +130,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
 
     def score(self, loads: Any, twists: Any, sample_weight: ArrayLike | None = None) -> float:
         """Return minus the mean angle [rad] between predicted and given motions."""
-        angles = angles_between(self.predict(loads), scaled_motions(twists, self.rho))
+        angles = angles_between(self.predict(loads), scaled_motions(twists, self._length))
         weight = np.ones(len(angles)) if sample_weight is None else np.asarray(sample_weight)
         known = np.isfinite(angles)
         if not known.any():
@@ -138,7 +143,7 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         """Return the fitted surface as the text of a model file; `load_surface` reads it."""
         check_is_fitted(self)
         pairs = f"fitted to {self.n_pairs_} pairs"
-        return surface_toml(self.surface_, self.rho, f"{type(self).__name__} {pairs}", pairs)
+        return surface_toml(self.surface_, self._length, f"{type(self).__name__} {pairs}", pairs)
 
     def __sklearn_tags__(self) -> Any:
         """Say that NaN may come in, three columns come out, and the score is no R^2."""
