@@ -6,6 +6,7 @@ import pkgutil
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import limitsurf
@@ -50,8 +51,33 @@ def test_readme_example_runs(capsys):
     assert names["result"].rate > 0.9
 
 
+def test_readme_example_of_plans_runs(capsys):
+    code = python_blocks(ROOT / "README.md")[1]
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    printed = capsys.readouterr().out
+    assert repr(names["plan"]) in printed
+    assert names["plan"].final == pytest.approx(0.0)
+    assert names["sided"].period == pytest.approx(2 * np.pi)
+    assert "100 of 100 runs aligned" in printed
+
+
+DOCS = [
+    pytest.param(code, id=f"{page.stem} {k}")
+    for page in sorted((ROOT / "docs").glob("*.md"))
+    for k, code in enumerate(python_blocks(page))
+]
+
+
+@pytest.mark.parametrize("code", DOCS)
+def test_example_in_docs_runs(code, capsys):
+    """Every block of Python runs by itself and prints something."""
+    exec(compile(code, "docs", "exec"), {})
+    assert "print(" not in code or capsys.readouterr().out
+
+
 def test_readme_example_of_motion_runs(capsys):
-    code = python_blocks(ROOT / "README.md")[2]
+    code = python_blocks(ROOT / "README.md")[3]
     names = {}
     exec(compile(code, "README.md", "exec"), names)
     assert "a contact sticks" in capsys.readouterr().out
@@ -63,7 +89,7 @@ def test_readme_example_of_motion_runs(capsys):
 
 
 def test_readme_example_of_friction_runs(capsys):
-    code = python_blocks(ROOT / "README.md")[1]
+    code = python_blocks(ROOT / "README.md")[2]
     names = {}
     exec(compile(code, "README.md", "exec"), names)
     answer = names["answer"]

@@ -7,6 +7,9 @@ from limitsurf.actuators.density_field import DensityField
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.motion.field_motion import field_motion
+from limitsurf.planning.alignment import plan_alignment
+from limitsurf.planning.field_errors import FieldErrors
+from limitsurf.planning.robustness import robustness
 from limitsurf.planning.skewed_equilibria import skewed_equilibria
 from limitsurf.planning.turn_function import turn_function
 from tests.planning.equilibria_cases import PARTS, turned
@@ -29,6 +32,20 @@ def test_loads_vanish_there(name, skew):
             beside = turn.median(float(phi) + 1e-4)[0]
             push = field.load(part, (0.0, -beside, phi + 1e-4))[2]
             assert np.sign(push) == sign
+
+
+@pytest.mark.parametrize("skew", [-0.2, 0.2])
+def test_positive_skew_turns_pushes_clockwise_and_parts_counter_clockwise(skew):
+    """Errors of direction count counter-clockwise, the other way."""
+    part = Part.from_file("paper_t")
+    turn = turn_function(part)
+    for place, normal in ((1.0, -0.5 * np.pi), (-1.0, 0.5 * np.pi)):
+        push = DensityField.skewed_squeeze(0.0, skew, 1.0)(np.array([[0.0, place]]))[0]
+        assert np.arctan2(push[1], push[0]) == pytest.approx(normal - skew)
+    (rest,) = skewed_equilibria(turn, skew).stable
+    assert np.sign(rest - 0.5 * np.pi) == np.sign(skew)
+    found = robustness(plan_alignment(part), FieldErrors(direction=-skew))
+    assert found.worst.sets[0] == pytest.approx(np.array([[rest, rest]]), abs=1e-6)
 
 
 @pytest.mark.parametrize("case", CASES, ids=NAMES)

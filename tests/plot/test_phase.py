@@ -56,7 +56,7 @@ def test_equilibria_lie_on_the_median(figure, part):
 
 def test_axes_have_units(figure):
     assert figure.layout.xaxis.title.text == "orientation phi [deg]"
-    assert figure.layout.yaxis.title.text == "offset of the line [mm]"
+    assert figure.layout.yaxis.title.text == "offset of the line from the centroid [mm]"
 
 
 def test_bad_counts_are_named(part):

@@ -5,8 +5,11 @@ import pytest
 from step_twins import random_steps
 
 from limitsurf.geometry.part import Part
+from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.diameter_function import diameter_function
 from limitsurf.planning.plan_lines import plan_lines
+from limitsurf.planning.squeeze_function import squeeze_function
+from limitsurf.planning.turn_function import turn_function
 from limitsurf.plot.diameter import draw_diameter_function
 from limitsurf.plot.squeeze import draw_plan, draw_squeeze_function
 
@@ -47,9 +50,38 @@ def test_plan_shows_its_margins(modulus):
     for k, margin in enumerate(plan.margins[1:], 1):
         here = np.array(bars.x) == k
         assert np.array(bars.error_y.array)[here] == pytest.approx(np.degrees(margin))
-    paths = np.array(trace(figure, "orientations").y).reshape(-1, len(plan.lines) + 2)
-    assert len(paths) == round(np.degrees(modulus))
-    assert np.radians(paths[:, -2]) == pytest.approx(np.full(len(paths), plan.final))
+    ways = trace(figure, "orientations")
+    x, y = (np.array(v, dtype=float).reshape(-1, 3)[:, :2] for v in (ways.x, ways.y))
+    low, high = np.radians(figure.layout.yaxis.range)
+    assert low < 0.0 < modulus < high
+    for k, line in enumerate(plan.lines):
+        before, after = np.radians(y[x[:, 0] == k]).T
+        expected = plan.squeeze.follow(before - line) + line
+        assert after == pytest.approx(expected)
+        shown = np.mod(after[(after >= 0.0) & (after < modulus)], modulus)
+        assert set(np.round(np.mod(after, modulus), 6)) == set(np.round(shown, 6))
+    ends = np.radians(y[x[:, 0] == len(plan.lines) - 1][:, 1])
+    assert np.mod(ends, modulus) == pytest.approx(np.full(len(ends), plan.final))
+    assert np.sum(x[:, 0] == 0) >= round(np.degrees(modulus))
+
+
+def test_plan_wraps_around_at_the_ends():
+    """No way climbs over the whole picture where it only passes its border."""
+    plan = plan_alignment(Part.from_file("longplan_L5"))
+    ways = trace(draw_plan(plan), "orientations")
+    y = np.array(ways.y, dtype=float).reshape(-1, 3)[:, :2]
+    assert np.abs(np.diff(y)).max() < 30.0
+    assert y.min() < 0.0
+    assert y.max() > 180.0
+
+
+def test_an_image_at_the_border_is_drawn_at_zero():
+    turns = 2.0 * np.pi * np.arange(20) / 20
+    part = Part(1e-3 * np.column_stack([np.cos(turns), np.sin(turns)]))
+    figure = draw_squeeze_function(squeeze_function(turn_function(part)))
+    assert np.unique(segments(figure, "squeeze function s")[2]) == pytest.approx(
+        18.0 * np.arange(10)
+    )
 
 
 def test_diameter_function():

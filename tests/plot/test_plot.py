@@ -6,10 +6,12 @@ import shapely
 import shapely.affinity
 
 from limitsurf import plot
+from limitsurf.actuators.actuator_array import load_array
 from limitsurf.contacts.coulomb import coulomb_contact
 from limitsurf.errors import InputError
 from limitsurf.geometry.part import Part
 from limitsurf.planning.alignment import plan_alignment
+from limitsurf.planning.diameter_function import diameter_function
 from limitsurf.planning.turn_function import turn_function
 from limitsurf.planning.verification import verify_alignment
 from limitsurf.sets.minkowski_sum import MinkowskiSum
@@ -38,7 +40,11 @@ def test_part(turn):
     figure = plot.draw_part(turn.part, turn)
     x = np.array(trace(figure, "paper_t").x)
     assert np.nanmax(x) - np.nanmin(x) == pytest.approx(4.8)
-    assert sum(t.name == "stable median" for t in figure.data) == 2
+    stable = [t for t in figure.data if t.name == "stable median"]
+    assert len(stable) == 2
+    assert stable[0].line.width > 2 * trace(figure, "unstable median").line.width
+    low, high = figure.layout.xaxis.range
+    assert low < np.nanmin(x) < np.nanmax(x) < high
     assert labels(figure) == ("x [mm]", "y [mm]")
 
 
@@ -61,14 +67,37 @@ def test_squeeze_function_covers_all_orientations(turn):
 
 def test_plan_ends_in_one_orientation(turn):
     plan = plan_alignment(turn.part)
-    paths = np.array(plot.draw_plan(plan).data[0].y).reshape(-1, 4)
-    assert paths[:, 2] == pytest.approx(np.full(180, np.degrees(plan.final)))
+    ways = plot.draw_plan(plan).data[0]
+    x, y = (np.array(v, dtype=float).reshape(-1, 3) for v in (ways.x, ways.y))
+    ends = y[x[:, 1] == len(plan.lines), 1]
+    assert np.mod(ends, 180.0) == pytest.approx(np.full(len(ends), np.degrees(plan.final)))
 
 
 def test_errors(verification):
     figure = plot.draw_errors(verification)
     assert np.array(figure.data[0].x) == pytest.approx(np.degrees(verification.errors))
     assert "[deg]" in labels(figure)[0]
+    low, high = figure.layout.xaxis.range
+    assert [low, high] == [-high, high]
+    assert high > max(np.abs(figure.data[0].x).max(), np.degrees(verification.tolerance))
+    assert [s.x0 for s in figure.layout.shapes] == pytest.approx([-6.0, 6.0])
+
+
+@pytest.mark.parametrize(("size", "name"), [(1e-6, "um"), (1e-3, "mm"), (1e3, "m")])
+def test_the_unit_of_length_suits_the_part(size, name):
+    """Numbers on the axes are about 1 for a part of any size."""
+    part = Part(size * np.array([(0, 0), (3, 0), (3, 1), (1, 1), (1, 2.5), (0, 2.5)]))
+    scale = {"um": 1e6, "mm": 1e3, "m": 1.0}[name]
+    figure = plot.draw_part(part, turn_function(part))
+    assert labels(figure) == (f"x [{name}]", f"y [{name}]")
+    assert np.nanmax(trace(figure, "part").x) == pytest.approx(3.0 * size * scale)
+    diameter = plot.draw_diameter_function(diameter_function(part))
+    assert labels(diameter)[1] == f"distance of the jaws [{name}]"
+    assert trace(diameter, "stable").y[0] == pytest.approx(2.5 * size * scale)
+    phase = plot.draw_phase_portrait(part, paths=0)
+    assert labels(phase)[1] == f"offset of the line from the centroid [{name}]"
+    offset = turn_function(part).median(turn_function(part).stable[0])[0]
+    assert trace(phase, "stable").y[0] == pytest.approx(offset * scale)
 
 
 def test_animation_moves_the_part_from_start_to_end(verification):
@@ -94,6 +123,20 @@ def test_animation_colours_pixels_by_their_push(verification):
     pushes = np.array(figure.data[0].z)  # line at 0 degrees: down above it, up below
     assert np.all(pushes[32:] == 3)
     assert np.all(pushes[:32] == 2)
+
+
+def test_animation_of_a_push_squeeze_shows_the_line_beside_the_centre(paper_t):
+    """The line is where the pixels change their push, a circumradius and more from the centre."""
+    array = load_array("resonator128").running_under(paper_t)
+    plan = plan_alignment(paper_t, model="push-squeeze")
+    verification = verify_alignment(plan, paper_t, array, samples=1, seed=2)
+    figure = plot.animate_runs(verification, runs=1, frames=2)
+    pixels, line = figure.data[:2]
+    rows = np.asarray(pixels.z)[:, 0]  # the first line lies at 0 degrees
+    below, above = np.asarray(pixels.y)[rows == 2], np.asarray(pixels.y)[rows == 3]
+    assert below.max() < np.mean(line.y) < above.min()
+    assert np.mean(line.y) == pytest.approx(-1.1e3 * paper_t.circumradius)
+    assert "after centring the part" in figure.layout.title.text
 
 
 def drawn(trace):
@@ -188,5 +231,8 @@ def test_alignment_ends_alike_with_the_median_on_the_line():
             ]
         )
         assert shape.intersection(shapely.Polygon(half)).area == pytest.approx(shape.area / 2)
+    assert figure.layout.xaxis.ticktext == ("start", "line 1<br>0.0 deg", "line 2<br>45.0 deg")
+    low, high = figure.layout.xaxis.range
+    assert all(low <= s.bounds[0] and s.bounds[2] <= high for s in shapes)
     with pytest.raises(InputError, match="starts"):
         plot.draw_alignment(plan, 0.3)

@@ -88,7 +88,8 @@ class DensityField:
     ) -> DensityField:
         """Return a squeeze whose pushes are turned by `skew` [rad] from the normal of the line.
 
-        Without potential unless the skew is zero; see `force_fields.skewed_squeeze_field`.
+        Positive skew turns the pushes clockwise, and a part counter-clockwise. Without potential
+        unless the skew is zero; see `force_fields.skewed_squeeze_field`.
         """
         along, normal = _unit(line), _unit(line + 0.5 * np.pi)
         if not abs(finite("skew", skew)) < 0.5 * np.pi:

@@ -57,8 +57,9 @@ def skewed_squeeze_field(line: float, skew: float, offset: float = 0.0) -> Field
     r"""Return a squeeze field whose pushes are turned by `skew` [rad] from the normal of the line.
 
     Opposite on the two sides, ``-sign(z) (sin skew, cos skew)`` in axes along and across the line:
-    a part may turn for ever (K.-F. Boehringer, B. R. Donald, N. C. MacDonald, *Programmable force
-    fields for distributed manipulation*, Int. J. Robotics Research 18, 1999).
+    positive skew turns the pushes clockwise, and a part counter-clockwise, perhaps for ever (K.-F.
+    Boehringer, B. R. Donald, N. C. MacDonald, *Programmable force fields for distributed
+    manipulation*, Int. J. Robotics Research 18, 1999).
     """
     along, normal = _unit(line), _unit(line + 0.5 * np.pi)
     if not abs(as_number("skew", skew)) < 0.5 * np.pi:

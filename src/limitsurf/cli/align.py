@@ -17,8 +17,14 @@ from rich.table import Table
 from limitsurf.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from limitsurf.actuators.actuator_array import ActuatorArray
+    from limitsurf.planning.alignment import AlignmentPlan
     from limitsurf.planning.array_verification import ArrayVerification
-    from limitsurf.planning.turn_function import TurnFunction
+    from limitsurf.planning.robustness import Robustness
+    from limitsurf.report.alignment import Findings
 
 __all__ = ["align"]
 
@@ -93,6 +99,7 @@ def align(
     )
     if push == "computed":
         the_array = the_array.running_under(the_part)
+    robustness = plan.robustness(the_array, method=method, start_offset=offset)
     verification = verify_alignment(
         plan,
         the_part,
@@ -104,46 +111,85 @@ def align(
         start_offset=offset,
         progress=True,
     )
-    _report(verification, out, begin)
+    _report(robustness, verification, _durations(plan, the_array, method, offset), out, begin)
 
 
 _FILES = ("plan.json", "runs.nc", "report.html")
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_LINES = "write it like '0, 45, 90 deg'"
 
 
 def _optional(text: str | None, unit: str, name: str) -> float | None:
-    """Return a quantity in the SI unit, in which a bare number is already; None if not given."""
+    """Return a quantity in the SI unit; None if not given.
+
+    A bare number is in that unit already if it is the voltage; angles and lengths need a unit, as
+    nobody means 30 radians.
+    """
     from limitsurf.units import parse_quantity
 
     if text is None:
         return None
-    try:
-        value: str | float = float(text)
-    except ValueError:
-        value = text
-    return parse_quantity(value, unit, name=name)
+    bare = unit == "V" and re.fullmatch(_NUMBER, text.strip())
+    return parse_quantity(float(text) if bare else text, unit, name=name)
 
 
 def _angles(text: str) -> list[float]:
-    """Return the angles of a list such as '0, 45, 90 deg' [rad]; the last unit is everyone's."""
+    """Return the angles of a list such as '0, 45, 90 deg' [rad].
+
+    Numbers without a unit have that of the next one that has.
+    """
     from limitsurf.units import parse_quantity
 
-    *words, last = re.split(r"\s*,\s*", text.strip())
-    unit = re.sub(r"^[-+.\d]*", "", last)
-    return [parse_quantity(f"{word}{unit}", "rad", name="lines") for word in words] + [
-        parse_quantity(last, "rad", name="lines")
-    ]
+    unit, angles = "", []
+    for word in reversed(text.split(",")):
+        found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\W\d][^\s,]*|°)?\s*", word)
+        if found is None:
+            raise InputError("lines", "is no list of angles", value=text, remedy=_LINES)
+        unit = found[2] or unit
+        if not unit:
+            raise InputError("lines", "has no unit at its end", value=text, remedy=_LINES)
+        angles.append(parse_quantity(f"{found[1]} {unit}", "rad", name="lines"))
+    return angles[::-1]
 
 
-def _report(verification: ArrayVerification, out: Path | None, begin: float) -> None:
+def _report(
+    robustness: Robustness,
+    verification: ArrayVerification,
+    durations: NDArray[np.float64],
+    out: Path | None,
+    begin: float,
+) -> None:
     """Write the files, if there is a folder for them, and print what came out."""
     from limitsurf.planning.turn_function import turn_function
+    from limitsurf.report.alignment import Findings
 
-    turn = turn_function(verification.part)
+    findings = Findings(turn_function(verification.part), robustness, verification, durations)
     if out is not None:
-        _write(out, turn, verification)
-    _print(turn, verification, time.perf_counter() - begin)
+        _write(out, findings)
+    _print(findings, time.perf_counter() - begin)
     if out is not None:
         typer.echo(f"wrote {', '.join(str(out / name) for name in _FILES)}")
+
+
+def _durations(
+    plan: AlignmentPlan, array: ActuatorArray, method: str, offset: float | None
+) -> NDArray[np.float64]:
+    """Return the expected time of each line [s]; nan if it is not known.
+
+    That is if some starts take too long, and if pushes are not normal to the line.
+    """
+    import numpy as np
+
+    from limitsurf.errors import SolveFailed
+    from limitsurf.planning.duration import line_durations
+
+    unknown = np.full(len(plan.lines), np.nan)
+    if method != "dither":
+        return unknown
+    try:
+        return line_durations(plan, array, start_offset=offset)
+    except SolveFailed:
+        return unknown
 
 
 def _check_out(out: Path | None) -> None:
@@ -157,34 +203,35 @@ def _check_out(out: Path | None) -> None:
         raise InputError("out", f"{nearest} cannot be written", remedy="name another folder")
 
 
-def _write(out: Path, turn: TurnFunction, verification: ArrayVerification) -> None:
+def _write(out: Path, findings: Findings) -> None:
     """Write all files beside the folder first, then move them in: never a half-written one."""
     from limitsurf.report.alignment import alignment_page
 
     out.absolute().parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out.absolute().parent, prefix=".limitsurf-") as folder:
         draft = Path(folder)
+        verification = findings.verification
         (draft / "plan.json").write_text(verification.plan.to_json(), encoding="utf-8")
         verification.to_dataset().to_netcdf(draft / "runs.nc", engine="scipy")
-        (draft / "report.html").write_text(alignment_page(turn, verification), encoding="utf-8")
+        (draft / "report.html").write_text(alignment_page(findings), encoding="utf-8")
         out.mkdir(parents=True, exist_ok=True)
         for name in _FILES:
             shutil.move(draft / name, out / name)
 
 
-def _print(turn: TurnFunction, verification: ArrayVerification, seconds: float) -> None:
-    from limitsurf.report.alignment import plan_rows, summary_rows, verdict
+def _print(findings: Findings, seconds: float) -> None:
+    from limitsurf.report.alignment import PLAN_HEAD, plan_rows, summary_rows, verdict
 
     console = Console()
     summary = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
-    for row in summary_rows(turn, verification):
+    for row in summary_rows(findings):
         summary.add_row(*row)
     summary.add_row("computing time", f"{seconds:.1f} s")
-    plan = Table("step", "line", "margin", "runs at rest", box=None, padding=(0, 2, 0, 0))
-    for row in plan_rows(verification):
+    plan = Table(*PLAN_HEAD, box=None, padding=(0, 2, 0, 0))
+    for row in plan_rows(findings):
         plan.add_row(*row)
     console.print(summary)
     console.print()
     console.print(plan)
     console.print()
-    console.print(verdict(verification))
+    console.print(verdict(findings.verification))

@@ -60,6 +60,11 @@ class ArrayVerification(Verification):
         """The squeeze of each line."""
         return tuple(stages[-1] for stages in self.stages)
 
+    @property
+    def beside(self) -> float:
+        """How far to the right of the array's centre the lines pass [m]; not 0 for push-squeeze."""
+        return _BESIDE * self.part.circumradius if self.plan.model == "push-squeeze" else 0.0
+
     def replay(self, run: int, *, frames: int = 60) -> list[Trajectory]:
         """Simulate one run again and return its trajectory on each line."""
         self.check_run(run)

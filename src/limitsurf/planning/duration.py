@@ -45,7 +45,21 @@ def expected_duration(
     tolerance: float = float(np.radians(1.0)),
     start_offset: float | None = None,
 ) -> float:
-    """Return the expected time of a plan [s]: the sum of `line_durations`."""
+    """Return the expected time of a plan [s]: the sum of `line_durations`.
+
+    Parameters
+    ----------
+    plan, drive, tolerance, start_offset
+        See `line_durations`, also for the errors.
+
+    Examples
+    --------
+    >>> from limitsurf.actuators.actuator_array import load_array
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> plan = plan_alignment(Part.from_file("paper_t"))
+    >>> round(expected_duration(plan, load_array("resonator64")), 1)
+    5.8
+    """
     found = line_durations(plan, drive, tolerance=tolerance, start_offset=start_offset)
     return float(found.sum())
 

@@ -148,7 +148,17 @@ def robustness(
     sigmas : float
         Standard deviations of pixel and spread errors that count as likely. One is enough: these
         errors change sign within a pitch, and a part stops only where no load is left in any
-        direction; measured in ``docs/planning.md``.
+        direction; measured in ``docs/robustness.md``.
+
+    Returns
+    -------
+    Robustness
+
+    Raises
+    ------
+    InputError
+        A plan for a neutral part; an array without room for the part or without push; errors for
+        another number of lines.
 
     Notes
     -----

@@ -159,7 +159,12 @@ def boundary_shift(part: Part, mobility_ratio: float = 1.0) -> float:
     """Return how far the starting offset can move the border of a basin [rad].
 
     A plan for the model ``"squeeze"`` whose margins exceed this works under full motion, from any
-    offset: pass it to `plan_alignment` as `min_margin`.
+    offset: pass it to `plan_alignment` as `min_margin`. Zero for a neutral part.
+
+    Parameters
+    ----------
+    part, mobility_ratio : Part, float
+        See `separatrices`, also for the errors.
 
     Examples
     --------

@@ -1,12 +1,13 @@
 r"""Orientations at rest in a skewed squeeze, which has no potential.
 
-Pushes turned by eps from the normal of the line do not change the condition on the position (the
-line is the median), and turn the part with the moment
+Pushes turned clockwise by eps from the normal of the line do not change the condition on the
+position (the line is the median), and turn the part with the moment
 
 .. math:: M_\epsilon = \cos\epsilon\, U' + \sin\epsilon\, U
 
-at theta = -phi, counter-clockwise for positive eps. Its zeros are where
-:math:`-\tan\epsilon = U'/U`: none once eps exceeds the critical angle, and then the part spins.
+at theta = -phi: counter-clockwise for positive eps. (`FieldErrors.direction` counts the other way.)
+Its zeros are where :math:`-\tan\epsilon = U'/U`: none once eps exceeds the critical angle, and then
+the part spins.
 """
 
 from __future__ import annotations
@@ -46,12 +47,18 @@ def skewed_equilibria(turn: TurnFunction, skew: float) -> SkewedEquilibria:
     turn : TurnFunction
         From `turn_function`.
     skew : float
-        Angle of the pushes from the normal of the line [rad], as in `DensityField.skewed_squeeze`.
+        Angle of the pushes from the normal of the line, clockwise [rad], as in
+        `DensityField.skewed_squeeze`.
 
     Returns
     -------
     SkewedEquilibria
         ``.stable`` and ``.unstable``, empty beyond `TurnFunction.critical_angle`.
+
+    Raises
+    ------
+    InputError
+        A skew that is not between -pi/2 and pi/2.
 
     Examples
     --------

@@ -66,7 +66,23 @@ class FeederRange:
 def feeder_field(
     density: float, ratio: float, angle: float = 0.0, center: tuple[float, float] = (0.0, 0.0)
 ) -> FieldSum:
-    """Return a radial field plus a constant one along `angle` [rad], `ratio` times as strong.
+    """Return a radial field plus a constant one, `ratio` times as strong.
+
+    Parameters
+    ----------
+    density : float
+        Size of the radial field [N/m^2].
+    ratio : float
+        Size of the constant field over that; see `feeder_range`.
+    angle : float
+        Direction of the constant field [rad].
+    center : (float, float)
+        Where the radial field pushes to [m].
+
+    Raises
+    ------
+    InputError
+        A density that is not positive, or numbers that are not finite.
 
     Examples
     --------
@@ -82,6 +98,11 @@ def pivot_point(part: Part) -> Array:
     """Return the point of least mean distance from a part, seen from its centroid (2,) [m].
 
     In the frame of the part; a radial field brings it to its centre.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
 
     Examples
     --------

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limitsurf.planning.alignment import AlignmentPlan
 from limitsurf.planning.turn_function import TurnFunction, turn_function
+from limitsurf.plot.length_unit import length_unit
 from limitsurf.plot.part import outline_path
 from limitsurf.plot.style import COLORS, lay_out
 from limitsurf.sets.arguments import as_array
@@ -17,7 +18,9 @@ __all__ = ["draw_alignment"]
 
 Array = NDArray[np.float64]
 
-_CELL = 2.6  # width of a picture in circumradii
+_CELL = 2.6  # width of a picture, circumradii
+_WIDTH = 900.0  # of the whole, pixels
+_HEIGHTS = (100.0, 220.0)  # of a row, pixels
 
 
 def draw_alignment(plan: AlignmentPlan, starts: ArrayLike) -> Any:
@@ -32,29 +35,54 @@ def draw_alignment(plan: AlignmentPlan, starts: ArrayLike) -> Any:
         The plan.
     starts : (n,) float
         Orientations at the start [rad].
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> figure = draw_alignment(plan_alignment(Part.from_file("paper_t")), [0.3, 2.0])
+    >>> figure.layout.yaxis.ticktext
+    ('17 deg', '115 deg')
     """
     import plotly.graph_objects as go
 
     rows = as_array("starts", starts, None)
     turn = turn_function(plan.part)
-    size = 1e3 * _CELL * plan.part.circumradius
     figure = go.Figure()
     for row, start in enumerate(rows):
         for column, (line, pose) in enumerate(_stages(plan, turn, float(start))):
-            corner = size * np.array([column, -row])
-            _draw_stage(figure, plan, line, pose, corner, size)
-    columns = range(len(plan.lines) + 1)
-    names = ["start"] + [f"line {k}" for k in columns[1:]]
-    figure.update_xaxes(tickvals=[size * k for k in columns], ticktext=names, showgrid=False)
-    figure.update_yaxes(
-        tickvals=[-size * row for row in range(len(rows))],
-        ticktext=[f"{angle:.0f} deg" for angle in np.degrees(rows)],
-        showgrid=False,
-        scaleanchor="x",
-    )
-    millimetres = 1e3 * plan.part.circumradius
-    x = f"step of the plan (circumradius of the part {millimetres:.3g} mm)"
-    return lay_out(figure, x=x, y="orientation at the start")
+            _draw_stage(figure, plan, line, pose, _CELL * np.array([column, -row]))
+    names = ["start"] + [
+        f"line {k + 1}<br>{angle:.1f} deg" for k, angle in enumerate(np.degrees(plan.lines))
+    ]
+    labels = [f"{angle:.0f} deg" for angle in np.degrees(rows)]
+    _label(figure, names, labels)
+    unit = length_unit(plan.part.circumradius)
+    radius = unit.scale * plan.part.circumradius
+    x = f"step of the plan (circumradius of the part {radius:.3g} {unit.name})"
+    lay_out(figure, x=x, y="orientation at the start")
+    height = np.clip(_WIDTH / len(names), *_HEIGHTS)
+    return figure.update_layout(height=130 + height * len(labels))
+
+
+def _label(figure: Any, columns: list[str], rows: list[str]) -> None:
+    """Write what columns and rows are beside them, and leave no more room than they take."""
+    half = 0.5 * _CELL
+    for axes, names, sign in (("x", columns, 1.0), ("y", rows, -1.0)):
+        places = sign * _CELL * np.arange(len(names))
+        figure.update_layout(
+            {
+                f"{axes}axis": {
+                    "tickvals": places,
+                    "ticktext": names,
+                    "range": [places.min() - half, places.max() + half],
+                    "constrain": "domain",
+                    "showgrid": False,
+                    "zeroline": False,
+                }
+            }
+        )
+    figure.update_yaxes(scaleanchor="x")
 
 
 def _stages(
@@ -72,10 +100,11 @@ def _stages(
 
 
 def _draw_stage(
-    figure: Any, plan: AlignmentPlan, line: float | None, pose: Array, corner: Array, size: float
+    figure: Any, plan: AlignmentPlan, line: float | None, pose: Array, corner: Array
 ) -> None:
+    """Draw the part, and the line if there is one, about a corner; lengths in circumradii."""
     first = not figure.data
-    x, y = (outline_path(plan.part.at(pose)) + corner).T
+    x, y = (outline_path(plan.part.at(pose), 1.0 / plan.part.circumradius) + corner).T
     figure.add_scatter(
         x=x,
         y=y,
@@ -89,7 +118,7 @@ def _draw_stage(
     )
     if line is None:
         return
-    half = 0.45 * size * np.array([np.cos(line), np.sin(line)])
+    half = 0.45 * _CELL * np.array([np.cos(line), np.sin(line)])
     x, y = np.array([corner - half, corner + half]).T
     figure.add_scatter(
         x=x,

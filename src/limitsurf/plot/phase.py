@@ -11,6 +11,7 @@ from limitsurf.geometry.part import Part
 from limitsurf.planning.ideal_squeeze import IdealSqueeze
 from limitsurf.planning.separatrices import separatrices
 from limitsurf.planning.turn_function import TurnFunction, turn_function
+from limitsurf.plot.length_unit import length_unit
 from limitsurf.plot.style import COLORS, lay_out
 from limitsurf.sets.arguments import as_count
 
@@ -36,26 +37,38 @@ def draw_phase_portrait(part: Part, mobility_ratio: float = 1.0, *, paths: int =
         See `IdealSqueeze`.
     paths : int
         Starts on each side from which a path is drawn.
+
+    Examples
+    --------
+    >>> figure = draw_phase_portrait(Part.from_file("paper_t"), paths=4)
+    >>> [trace.name for trace in figure.data][-3:]
+    ['separatrix', 'stable', 'unstable']
     """
     import plotly.graph_objects as go
 
     count = as_count("paths", paths, 0)
     turn = turn_function(part)
+    unit = length_unit(part.circumradius)
     figure = go.Figure()
     phi = np.linspace(0.0, np.pi, _FRAMES)
     median = np.array([turn.median(float(angle))[0] for angle in phi])
     motions = _paths(part, IdealSqueeze(mobility_ratio), count)
     borders = [(c.orientations, c.offsets) for c in separatrices(part, mobility_ratio)]
     touching = [(phi, edge) for edge in _touching(part, phi)]
-    _add(figure, "line touches the part", touching, {"color": "#999999", "dash": "dot"})
-    _add(figure, "path", _copies(motions), {"color": "#bbbbbb", "width": 1})
-    _add(figure, "median", [(phi, median)], {"color": COLORS[0], "dash": "dash"})
-    _add(figure, "separatrix", _copies(borders), {"color": COLORS[1], "width": 2.5})
-    _add_equilibria(figure, turn)
-    reach = 1.1e3 * part.circumradius
+    for name, curves, style in (
+        ("line touches the part", touching, {"color": "#999999", "dash": "dot"}),
+        ("path", _copies(motions), {"color": "#999999", "width": 1}),
+        ("median", [(phi, median)], {"color": COLORS[0], "dash": "dash"}),
+        ("separatrix", _copies(borders), {"color": COLORS[1], "width": 2.5}),
+    ):
+        _add(figure, name, curves, style, unit.scale)
+    _add_equilibria(figure, turn, unit.scale)
+    reach = 1.1 * unit.scale * part.circumradius
     figure.update_xaxes(range=[0, 180], dtick=30)
     figure.update_yaxes(range=[-reach, reach])
-    return lay_out(figure, x="orientation phi [deg]", y="offset of the line [mm]")
+    return lay_out(
+        figure, x="orientation phi [deg]", y=f"offset of the line from the centroid [{unit.name}]"
+    )
 
 
 def _touching(part: Part, phi: Array) -> Array:
@@ -82,26 +95,29 @@ def _copies(curves: list[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
     ]
 
 
-def _add(figure: Any, name: str, curves: list[tuple[Array, Array]], line: dict[str, Any]) -> None:
+def _add(
+    figure: Any, name: str, curves: list[tuple[Array, Array]], line: dict[str, Any], scale: float
+) -> None:
     """Add curves, with gaps between them, as one trace; what lies outside [0, pi] is left out."""
     x: list[float] = []
     y: list[float] = []
     for phi, offset in curves:
         if phi.min() <= np.pi and phi.max() >= 0.0:
             x += [*np.degrees(phi).tolist(), np.nan]
-            y += [*(1e3 * offset).tolist(), np.nan]
+            y += [*(scale * offset).tolist(), np.nan]
     figure.add_scatter(x=x, y=y, mode="lines", line=line, name=name)
 
 
-def _add_equilibria(figure: Any, turn: TurnFunction) -> None:
+def _add_equilibria(figure: Any, turn: TurnFunction, scale: float) -> None:
     for name, angles, color, symbol in (
         ("stable", turn.stable, COLORS[2], "circle"),
         ("unstable", turn.unstable, COLORS[1], "circle-open"),
     ):
         figure.add_scatter(
             x=np.degrees(angles),
-            y=[1e3 * turn.median(float(angle))[0] for angle in angles],
+            y=[scale * turn.median(float(angle))[0] for angle in angles],
             mode="markers",
             name=name,
             marker={"color": color, "symbol": symbol, "size": 11},
+            cliponaxis=False,
         )

@@ -20,6 +20,21 @@ def draw_robustness(robustness: Robustness) -> Any:
 
     Wide, pale bars hold them with all errors at their worst, narrow ones likely; points mark where
     the plan without errors would be.
+
+    Parameters
+    ----------
+    robustness : Robustness
+        From `AlignmentPlan.robustness`.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> from limitsurf.planning.field_errors import FieldErrors
+    >>> plan = plan_alignment(Part.from_file("paper_t"))
+    >>> figure = draw_robustness(plan.robustness(FieldErrors(direction=0.01)))
+    >>> figure.layout.yaxis.title.text
+    "orientation in the array's frame [deg]"
     """
     import plotly.graph_objects as go
 
@@ -36,7 +51,7 @@ def draw_robustness(robustness: Robustness) -> Any:
                 y=high - low,
                 base=low,
                 width=width,
-                marker={"color": color, "opacity": opacity},
+                marker={"color": color, "opacity": opacity, "line": {"color": color, "width": 2}},
                 name=status if what is robustness.worst else f"{status}, likely width",
                 showlegend=what is robustness.worst and len(x) > 0,
             )
@@ -49,8 +64,10 @@ def draw_robustness(robustness: Robustness) -> Any:
     figure.update_xaxes(
         tickvals=list(range(len(names))), ticktext=names, range=[-0.6, len(names) - 0.4]
     )
-    figure.update_yaxes(range=[0, float(np.degrees(modulus))], dtick=30)
-    return lay_out(figure, x="", y="orientation in the array's frame [deg]")
+    whole = float(np.degrees(modulus))
+    figure.update_yaxes(range=[-whole / 60, whole * 61 / 60], dtick=whole / 6)
+    note = "wide bars: all errors at their worst; narrow bars: likely errors"
+    return lay_out(figure, x=note, y="orientation in the array's frame [deg]")
 
 
 def _bars(robustness: Robustness, what: Propagation, status: str) -> Any:

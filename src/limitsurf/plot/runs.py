@@ -76,7 +76,8 @@ def _show(line: int, lines: int) -> list[dict[str, Any]]:
 
 def _caption(verification: ArrayVerification, line: int, time: float) -> str:
     angle = np.degrees(verification.plan.lines[line])
-    return f"Line {line + 1} at {angle:.1f} deg, {time:.2f} s"
+    first = ", after centring the part" if len(verification.stages[line]) > 1 else ""
+    return f"Line {line + 1} at {angle:.1f} deg{first}, {time:.2f} s"
 
 
 def _duration(replay: list[Trajectory], line: int) -> float:
@@ -122,7 +123,8 @@ def _ground(verification: ArrayVerification, visible: int) -> list[Any]:
     for k, activation in enumerate(verification.activations):
         array, angle = activation.array, verification.plan.lines[k]
         centers = 1e3 * array.pixel_centers
-        reach = 500 * np.hypot(array.width, array.height) * np.array([-1.0, 1.0])
+        reach = 1000 * np.hypot(array.width, array.height) * np.array([-1.0, 1.0])
+        beside = 1e3 * verification.beside
         traces += [
             go.Heatmap(
                 x=centers[0, :, 0],
@@ -143,8 +145,8 @@ def _ground(verification: ArrayVerification, visible: int) -> list[Any]:
                 },
             ),
             go.Scatter(
-                x=reach * np.cos(angle),
-                y=reach * np.sin(angle),
+                x=reach * np.cos(angle) + beside * np.sin(angle),
+                y=reach * np.sin(angle) - beside * np.cos(angle),
                 mode="lines",
                 showlegend=False,
                 line={"color": "black", "dash": "dash"},

@@ -15,11 +15,26 @@ __all__ = ["draw_plan", "draw_squeeze_function"]
 
 Array = NDArray[np.float64]
 
+_SAME, _DIGITS = 1e-9, 9  # up to which orientations count as equal
+
 
 def draw_squeeze_function(squeeze: SqueezeFunction) -> Any:
     """Return a plotly figure of the steps of a squeeze function over one modulus of orientations.
 
     Where steps leave gaps, both images that may come are drawn, dotted.
+
+    Parameters
+    ----------
+    squeeze : SqueezeFunction
+        The step function of any model.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.basin_steps import unknown_offset_function
+    >>> figure = draw_squeeze_function(unknown_offset_function(Part.from_file("paper_t")))
+    >>> [trace.name for trace in figure.data]
+    ['squeeze function s', 'either of two', 'unchanged']
     """
     import plotly.graph_objects as go
 
@@ -53,29 +68,37 @@ def draw_squeeze_function(squeeze: SqueezeFunction) -> Any:
 def draw_plan(plan: LinePlan) -> Any:
     """Return a plotly figure of where each line takes orientations from all of one modulus.
 
-    Bars about the orientations before a line are its margin: by so much may the line's angle be
-    off.
+    What leaves the picture at the top comes back at the bottom. Bars about the orientations before
+    a line are its margin: by so much may the line's angle be off.
+
+    Parameters
+    ----------
+    plan : AlignmentPlan or LinePlan
+        The plan.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.alignment import plan_alignment
+    >>> figure = draw_plan(plan_alignment(Part.from_file("paper_t")))
+    >>> figure.layout.xaxis.ticktext
+    ('start', 'line 1<br>0.0 deg', 'line 2<br>45.0 deg')
     """
     import plotly.graph_objects as go
 
     modulus = plan.squeeze.modulus
     whole = float(np.degrees(modulus))
-    starts = np.linspace(0.0, modulus, round(whole), endpoint=False)
-    stages = [starts]
-    for line in plan.lines:
-        stages.append(np.mod(plan.squeeze(stages[-1] - line) + line, modulus))
-    paths = np.degrees(np.array(stages))
+    stages, turns = _stages(plan)
+    figure = go.Figure()
+    x, y = _turns(stages, turns, modulus)
+    figure.add_scatter(
+        x=x, y=y, mode="lines", line={"color": COLORS[0], "width": 1.0}, name="orientations"
+    )
+    if len(plan.lines) > 1:
+        _add_margins(figure, stages[1:-1], plan.margins[1:], modulus)
     names = ["start"] + [
         f"line {k + 1}<br>{angle:.1f} deg" for k, angle in enumerate(np.degrees(plan.lines))
     ]
-    x = np.tile([*range(len(names)), np.nan], len(starts))
-    y = np.vstack([paths, np.full(len(starts), np.nan)]).T.ravel()
-    figure = go.Figure()
-    figure.add_scatter(
-        x=x, y=y, mode="lines", line={"color": COLORS[0], "width": 0.7}, name="orientations"
-    )
-    if len(plan.lines) > 1:
-        _add_margins(figure, paths, np.degrees(plan.margins))
     figure.update_xaxes(
         tickvals=list(range(len(names))), ticktext=names, range=[-0.2, len(names) - 0.8]
     )
@@ -83,14 +106,41 @@ def draw_plan(plan: LinePlan) -> Any:
     return lay_out(figure, x="", y="orientation in the array's frame [deg]")
 
 
-def _add_margins(figure: Any, paths: Array, margins: Array) -> None:
+def _stages(plan: LinePlan) -> tuple[list[Array], list[Array]]:
+    """Return the different orientations before the first and after each line, and their turns."""
+    modulus = plan.squeeze.modulus
+    stages = [np.linspace(0.0, modulus, round(np.degrees(modulus)), endpoint=False)]
+    turns = []
+    for line in plan.lines:
+        here = stages[-1] - line
+        turns.append(plan.squeeze.follow(here) - here)
+        after = np.mod(np.round(stages[-1] + turns[-1], _DIGITS), modulus)
+        stages.append(np.unique(after))
+    return stages, turns
+
+
+def _turns(stages: list[Array], turns: list[Array], modulus: float) -> tuple[Array, Array]:
+    """Return the way of each orientation over each line, again on the other side if it leaves."""
+    x, y = [], []
+    for k, (before, turn) in enumerate(zip(stages[:-1], turns, strict=True)):
+        ways = np.column_stack([before, before + turn, np.full(len(turn), np.nan)])
+        outside = np.floor(np.round(ways[:, 1] / modulus, _DIGITS))
+        again = outside != 0.0
+        ways = np.vstack([ways, ways[again] - modulus * outside[again, None]])
+        x.append(np.tile([k, k + 1, np.nan], len(ways)))
+        y.append(np.degrees(ways).ravel())
+    return np.concatenate(x), np.concatenate(y)
+
+
+def _add_margins(figure: Any, stages: list[Array], margins: Array, modulus: float) -> None:
     """Add the orientations before each line but the first, with the margin of the line."""
-    places = [np.unique(np.round(stage, 9)) for stage in paths[1:-1]]
+    places = [np.concatenate([s - modulus, s, s + modulus]) for s in stages]
     counts = [len(place) for place in places]
+    error = {"array": np.repeat(np.degrees(margins), counts), "color": COLORS[1]}
     figure.add_scatter(
-        x=np.repeat(np.arange(1, len(margins)), counts),
-        y=np.concatenate(places),
-        error_y={"array": np.repeat(margins[1:], counts), "color": COLORS[1], "thickness": 1.5},
+        x=np.repeat(np.arange(1, len(stages) + 1), counts),
+        y=np.degrees(np.concatenate(places)),
+        error_y={**error, "thickness": 1.5},
         mode="markers",
         marker={"color": COLORS[1], "size": 6},
         name="margin of the next line",
@@ -109,5 +159,7 @@ def _segments(
         for low, high in ((start, min(stop, modulus)), (0.0, stop - modulus)):
             if high > low:
                 x += [*np.degrees([low, high]).tolist(), np.nan]
-                y += [float(np.degrees(np.mod(image, modulus)))] * 2 + [np.nan]
+                level = np.mod(image, modulus)
+                level *= modulus - level > _SAME  # 0, not just below the modulus
+                y += [float(np.degrees(level))] * 2 + [np.nan]
     return x, y

@@ -17,10 +17,10 @@ def lay_out(figure: Any, *, x: str, y: str, title: str = "") -> Any:
     figure.update_layout(
         template="plotly_white",
         font={"family": "system-ui, sans-serif", "size": 14},
-        margin={"l": 70, "r": 20, "t": 50 if title else 30, "b": 60},
+        margin={"l": 70, "r": 20, "t": 64 if title else 30, "b": 60},
         height=430,
         legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0.0},
-        title=title or None,
+        title={"text": title, "font": {"size": 16}} if title else None,
         xaxis_title=x,
         yaxis_title=y,
     )

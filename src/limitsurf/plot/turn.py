@@ -13,7 +13,21 @@ __all__ = ["draw_turn_function"]
 
 
 def draw_turn_function(turn: TurnFunction) -> Any:
-    """Return a plotly figure of the moment that turns the part, its sign, and its zeros."""
+    """Return a plotly figure of the moment that turns the part, its sign, and its zeros.
+
+    Parameters
+    ----------
+    turn : TurnFunction
+        From `turn_function`.
+
+    Examples
+    --------
+    >>> from limitsurf.geometry.part import Part
+    >>> from limitsurf.planning.turn_function import turn_function
+    >>> figure = draw_turn_function(turn_function(Part.from_file("paper_t")))
+    >>> [trace.name for trace in figure.data]
+    ['turn function t', 'moment / largest moment', 'stable', 'unstable']
+    """
     import plotly.graph_objects as go
 
     phi = np.unique(np.concatenate([np.linspace(0.0, np.pi, 721), turn.breakpoints]))
@@ -45,6 +59,7 @@ def draw_turn_function(turn: TurnFunction) -> Any:
             mode="markers",
             name=name,
             marker={"color": color, "symbol": symbol, "size": 11},
+            cliponaxis=False,
         )
     figure.update_xaxes(range=[0, 180], dtick=30)
     return lay_out(figure, x="orientation phi [deg]", y="turn function t [1]")
