@@ -19,9 +19,10 @@ import pandas as pd
 from scipy import stats
 from simulated_supports import SUPPORTS as SIMULATED
 from simulated_supports import pairs, support
-from zhou2016 import SUPPORTS, feet, folder
+from zhou2016 import folder
 
 from limitsurf.contacts.contact_set import ContactSet
+from limitsurf.datasets.zhou2016 import RHO, SUPPORTS, load_zhou2016, three_feet
 from limitsurf.fitting.actuator_model import ActuatorModel
 from limitsurf.fitting.compare_models import compare_models, default_models
 from limitsurf.fitting.contact_model import ContactModel
@@ -29,7 +30,6 @@ from limitsurf.fitting.ellipsoid_model import EllipsoidModel
 from limitsurf.fitting.quartic_model import QuarticModel
 from limitsurf.fitting.three_point_model import ThreePointModel
 
-RHO = 0.05  # m
 SIZES = (5, 10, 20, 30)
 PUBLISHED = {
     "convex quartic": (16.3, 13.5, 12.2, 12.2),
@@ -42,12 +42,8 @@ CHOSEN = "**chosen by cross-validation**"
 
 def measured_pairs():
     """Return loads and displacements (50, 3) of each support."""
-    table = pd.read_csv(folder() / "pairs.csv")
-    columns = ["Fx_N", "Fy_N", "M_Nm", "dx_m", "dy_m", "dtheta_rad"]
-    return {
-        name: np.hsplit(table.loc[table.support == name, columns].to_numpy(), 2)
-        for name in SUPPORTS
-    }
+    triangles = load_zhou2016(folder(), SUPPORTS)
+    return {name: (part.data.loads, part.data.twists) for name, part in triangles.items()}
 
 
 def split(n, seed):
@@ -64,7 +60,7 @@ def angle(model, loads, twists):
 def errors_of_split(name, loads, twists, n, seed):
     """Return the mean held-out angle [deg] by model, and the name of the one chosen."""
     seen, held = split(n, seed)
-    known = feet(name).position
+    known = three_feet(name).position
     models = default_models(RHO) | {
         "three known feet": ThreePointModel(known, RHO),
         "three known feet, one friction": ThreePointModel(known, RHO, one_friction=True),

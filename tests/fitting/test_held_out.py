@@ -3,12 +3,10 @@
 import bench_held_out
 import numpy as np
 import pytest
-from zhou2016 import SUPPORTS
 
+from limitsurf.datasets.zhou2016 import RHO, SUPPORTS
 from limitsurf.fitting.contact_model import ContactModel
 from tests.measured_data import measured_pushes
-
-RHO = bench_held_out.RHO
 
 
 @pytest.fixture(scope="module")
