@@ -59,8 +59,8 @@ PHYSICAL = {
 class Physical:
     """Turns any numbers into loads and motions that fit them, before a model sees them.
 
-    Loads are a fixed linear map of the features; motions those of an ellipsoid, turned a little by
-    the targets. The checks then try the models themselves.
+    Loads are a fixed map of the features; motions those of an ellipsoid, turned a little by the
+    targets. The checks then try the models themselves.
     """
 
     def fit(self, X, y=None, sample_weight=None):
@@ -96,9 +96,9 @@ def _checked(model, X, y, **options):
 
 
 def loads(X):
-    """Return loads (n, 3): a fixed map of the features."""
+    """Return loads (n, 3) in all directions: a fixed map of the features."""
     matrix = np.random.default_rng(X.shape[1]).normal(size=(X.shape[1], 3))
-    return X @ matrix * [1.0, 1.0, 0.05]
+    return np.cos(X @ matrix + 1.0) * [1.0, 1.0, 0.05]
 
 
 def motions(F, y):

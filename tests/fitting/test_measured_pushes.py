@@ -1,25 +1,21 @@
 """Held-out errors on the measured pushes, against those that their authors published."""
 
-import csv
-
 import numpy as np
 import pytest
 
+from limitsurf.datasets.zhou2016 import RHO, SUPPORTS, load_zhou2016
 from limitsurf.fitting.ellipsoid_model import EllipsoidModel
 from limitsurf.fitting.quartic_model import QuarticModel
 from tests.measured_data import measured_pushes
 
-RHO, SPLITS, SIZES = 0.05, 15, (5, 10, 20, 30)
+SPLITS, SIZES = 15, (5, 10, 20, 30)
 PUBLISHED = {EllipsoidModel: (17.4, 15.7, 14.1, 13.7), QuarticModel: (16.3, 13.5, 12.2, 12.2)}
 
 
 def supports():
     """Return loads and motions (50, 3) of each three-foot support."""
-    with (measured_pushes() / "pairs.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if "patch" not in row["support"]]
-    for name in sorted({row["support"] for row in rows}):
-        numbers = [list(row.values())[3:9] for row in rows if row["support"] == name]
-        yield np.split(np.array(numbers, dtype=float), 2, axis=1)
+    triangles = load_zhou2016(measured_pushes(), SUPPORTS).values()
+    return [(triangle.data.loads, triangle.data.twists) for triangle in triangles]
 
 
 @pytest.mark.slow
