@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import warnings
 from abc import abstractmethod
+from contextlib import AbstractContextManager
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_is_fitted
+from threadpoolctl import ThreadpoolController
 
 from limitsurf.errors import InputError
 from limitsurf.fitting.columns import column_names, named_rows
@@ -22,7 +25,7 @@ from limitsurf.fitting.pairs import Pairs, read_pairs, scaled_loads, scaled_moti
 from limitsurf.fitting.surface_files import surface_toml
 from limitsurf.sets.convex_set import ConvexSet
 
-__all__ = ["LimitSurfaceModel", "angles_between"]
+__all__ = ["LimitSurfaceModel", "angles_between", "one_blas_thread"]
 
 Array = NDArray[np.float64]
 
@@ -35,6 +38,17 @@ def angles_between(a: Array, b: Array) -> Array:
     a, b = (x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300) for x in (a, b))
     apart, along = (np.linalg.norm(x, axis=-1) for x in (a - b, a + b))
     return np.asarray(2.0 * np.arctan2(apart, along))
+
+
+def one_blas_thread() -> AbstractContextManager[Any]:
+    """Return a context in which BLAS does not share out matrices as small as those of a fit."""
+    context: AbstractContextManager[Any] = _threads().limit(limits=1, user_api="blas")
+    return context
+
+
+@cache
+def _threads() -> Any:
+    return ThreadpoolController()
 
 
 class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
@@ -106,7 +120,8 @@ class LimitSurfaceModel(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             least=self._least_pairs,
             passive=self._passive,
         )
-        self.surface_ = self._fit(pairs)
+        with one_blas_thread():
+            self.surface_ = self._fit(pairs)
         self.n_pairs_, self.n_features_in_ = len(pairs), 3
         if names := column_names(loads):
             self.feature_names_in_ = np.array(names, dtype=object)

@@ -14,7 +14,7 @@ from rich.progress import track
 from sklearn.base import clone
 
 from limitsurf.errors import InputError
-from limitsurf.fitting.base import LimitSurfaceModel, angles_between
+from limitsurf.fitting.base import LimitSurfaceModel, angles_between, one_blas_thread
 from limitsurf.fitting.columns import named_rows
 from limitsurf.sets.arguments import as_count, as_points
 from limitsurf.sets.convex_set import ConvexSet
@@ -141,7 +141,9 @@ def bootstrap(
     )(delayed(_refit)(model, F[draw], v[draw]) for draw in draws)
     if progress:
         fits = track(fits, description="Refitting", total=n)
-    with warnings.catch_warnings():  # the fit to all pairs has said what it drops
+    # threads of refits must not each keep and restore the number of BLAS threads; and the fit to
+    # all pairs has said what it drops
+    with one_blas_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return Bootstrap(best, tuple(fits), seed)
 
