@@ -105,8 +105,10 @@ def test_readme_example_of_fitting_runs(capsys):
     exec(compile(code, "README.md", "exec"), names)
     found, model = names["found"], names["model"]
     assert found.advice in capsys.readouterr().out
-    assert found.table.angle[found.recommended] == found.table.angle.min() < 10.0
-    assert model.surface_.support([1.0, 0.0, 0.0]) == pytest.approx(1.0, rel=0.1)
+    assert found.table.angle[found.recommended] == found.table.angle.min()
+    exact = limitsurf.datasets.make_sliding_data(names["feet"].limit_surface(), 200, 0.0, rho=0.05)
+    assert -model.score(exact.loads, exact.twists) < np.radians(4.0)
+    assert model.surface_.support([1.0, 0.0, 0.0]) == pytest.approx(1.0, rel=0.02)
 
 
 def test_links_within_the_repository_work():
