@@ -6,7 +6,7 @@ others. "Chosen": `compare_models` sees the training pushes alone, cross-validat
 know nothing of the feet, and the one it recommends is fitted to all of them. The mean over
 supports and splits, with a 95 % interval over the splits.
 
-Simulated: 100 exact pairs of random motions; 300 others to judge on.
+Simulated: 100 exact pairs of random motions under `make_support`; 300 others to judge on.
 
 Usage: python benchmarks/bench_held_out.py [--splits 15] [--draws 50] [measured|simulated|actuator]
 """
@@ -17,11 +17,11 @@ import time
 import numpy as np
 import pandas as pd
 from scipy import stats
-from simulated_supports import SUPPORTS as SIMULATED
-from simulated_supports import pairs, support
 from zhou2016 import folder
 
 from limitsurf.contacts.contact_set import ContactSet
+from limitsurf.datasets.simulated_supports import SUPPORT_KINDS, make_support
+from limitsurf.datasets.simulation import make_sliding_data
 from limitsurf.datasets.zhou2016 import RHO, SUPPORTS, load_zhou2016, three_feet
 from limitsurf.fitting.actuator_model import ActuatorModel
 from limitsurf.fitting.compare_models import compare_models, default_models
@@ -94,13 +94,9 @@ def measured(splits):
 
 def simulated(draws):
     """Print the table of exact pairs of simulated supports."""
-    models = {
-        "contacts": ContactModel(1.0),
-        "quartic": QuarticModel(1.0),
-        "ellipsoid": EllipsoidModel(1.0),
-    }
+    models = {"contacts": ContactModel, "quartic": QuarticModel, "ellipsoid": EllipsoidModel}
     rows = []
-    for kind in SIMULATED:
+    for kind in SUPPORT_KINDS:
         errors = np.array([errors_of_draw(kind, seed, models.values()) for seed in range(draws)])
         cells = [f"{e.mean():.2f} (at most {e.max():.2f})" for e in errors.T]
         rows.append((kind, *cells))
@@ -108,11 +104,17 @@ def simulated(draws):
 
 
 def errors_of_draw(kind, seed, models):
-    """Return the angles [deg] of models fitted to 100 exact pairs."""
-    rng = np.random.default_rng(seed)
-    surface = support(kind, rng)
-    seen, held = pairs(surface, 100, rng), pairs(surface, 300, rng)
-    return [angle(model.fit(*seen), *held) for model in models]
+    """Return the angles [deg] of models fitted to 100 exact pairs; rho is the feet's gyration."""
+    contacts = make_support(kind, seed)
+    distances = np.linalg.norm(contacts.position, axis=1)
+    rho = float(np.sqrt(np.average(distances**2, weights=contacts.radius)))
+    surface = contacts.limit_surface()
+    seen, held = (
+        make_sliding_data(surface, n, 0.0, draw, rho=rho)
+        for n, draw in ((100, seed), (300, 1000 + seed))
+    )
+    fitted = [model(rho).fit(seen.loads, seen.twists) for model in models]
+    return [angle(model, held.loads, held.twists) for model in fitted]
 
 
 def actuator(draws):

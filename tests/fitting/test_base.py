@@ -25,11 +25,12 @@ def test_fits_use_one_thread_and_leave_the_number_as_it_was():
 
     loads, twists = pairs_of(BALL, 20)
     with threadpool_limits(2, "blas"):
-        assert blas_threads() == {2}
+        before = blas_threads()  # there may be a library that knows one thread only
+        assert 2 in before
         Watched(0.05).fit(loads, twists)
         bootstrap(Watched(0.05), loads, twists, n=4, n_jobs=2)
         assert seen == {1}
-        assert blas_threads() == {2}
+        assert blas_threads() == before
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 0.3, np.pi / 2, np.pi - 1e-9, np.pi])

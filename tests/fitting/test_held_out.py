@@ -36,7 +36,6 @@ def test_the_model_chosen_on_the_training_pushes_beats_what_is_published(data):
     for k, n in enumerate(bench_held_out.SIZES):
         angles = []
         for name in SUPPORTS:
-            for seed in range(2):
-                errors, _ = bench_held_out.errors_of_split(name, *data[name], n, seed)
-                angles.append(errors[bench_held_out.CHOSEN])
+            errors, _ = bench_held_out.errors_of_split(name, *data[name], n, 0)
+            angles.append(errors[bench_held_out.CHOSEN])
         assert np.mean(angles) < min(row[k] for row in bench_held_out.PUBLISHED.values())
