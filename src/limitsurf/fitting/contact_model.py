@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 _REACH = 3.0  # radius of the grid in rho: feet of a part are seldom farther out
 _GAIN, _SHARPEN = 0.9, 0.25  # finer cells and a lower width must bring the noise below _GAIN
-_ENOUGH = 1e-8  # noise, a relative error of 0.01 % squared, below which nothing is refined
+_ENOUGH = 1e-9  # noise, a relative error of 0.003 % squared, below which nothing is refined
 _NOTHING = 1e-9  # weights below this, relative to the largest, carry nothing
 
 
