@@ -9,8 +9,9 @@ Usage: python benchmarks/bench_pushes.py
 """
 
 import numpy as np
-from zhou2016 import SUPPORTS, feet, read_pushes, rotation
+from zhou2016 import read_pushes, rotation
 
+from limitsurf.datasets.zhou2016 import SUPPORTS, three_feet
 from limitsurf.motion.pushing import push_along
 
 STEPS = 20
@@ -57,7 +58,7 @@ def finger_path(push):
 
 def errors(support, path_of, chosen):
     """Return errors [deg] of the three predictions, (3, n): feet, ellipsoid, no rotation."""
-    contacts = feet(support)
+    contacts = three_feet(support)
     rows = []
     for push in filter(chosen, read_pushes(support)):
         path = path_of(push)

@@ -99,6 +99,18 @@ def test_readme_example_of_friction_runs(capsys):
     assert answer.projection.error_bound < 1e-10
 
 
+def test_readme_example_of_fitting_runs(capsys):
+    code = python_blocks(ROOT / "README.md")[4]
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    found, model = names["found"], names["model"]
+    assert found.advice in capsys.readouterr().out
+    assert found.table.angle[found.recommended] == found.table.angle.min()
+    exact = limitsurf.datasets.make_sliding_data(names["feet"].limit_surface(), 200, 0.0, rho=0.05)
+    assert -model.score(exact.loads, exact.twists) < np.radians(4.0)
+    assert model.surface_.support([1.0, 0.0, 0.0]) == pytest.approx(1.0, rel=0.02)
+
+
 def test_links_within_the_repository_work():
     pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
     broken = [

@@ -44,3 +44,20 @@ def test_public_name_exists(name):
 def test_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = ls.no_such_name
+
+
+@pytest.mark.parametrize("name", [*ls.fitting.__all__, *ls.datasets.__all__])
+def test_names_of_fitting_and_data_are_no_modules(name):
+    home = ls.fitting if name in ls.fitting.__all__ else ls.datasets
+    assert getattr(home, name).__class__.__name__ != "module"
+
+
+def test_fitting_without_scikit_learn_names_what_to_install():
+    code = (
+        "import sys; sys.modules['sklearn'] = None\nimport limitsurf as ls; ls.datasets\n"
+        "try: ls.fitting\nexcept ImportError as error: print(error)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert "needs sklearn: pip install 'limitsurf[fit]'" in result.stdout

@@ -11,6 +11,8 @@ PRINTED = {
     "02_walker": ("SteadyWalk(held)", "all numbers hold"),
     "03_slider_on_array": ("Runs(200: 200 at rest)", "all numbers hold"),
     "04_alignment": ("TurnCertificate(complete", "cannot be aligned", "all numbers hold"),
+    "05_fit_measured_pushes": (" pushes", "recommended: ", "all numbers hold"),
+    "06_identify_an_actuator": ("errors of offset", "all numbers hold"),
     "align_a_part": ("AlignmentPlan(", "Verification("),
 }
 

@@ -236,7 +236,8 @@ _HOME = {
     "verify_alignment": "planning.verification",
     "walk": "motion.walk",
 }
-_MODULES = ("errors", "plot", "units")
+_MODULES = ("datasets", "errors", "plot", "units")
+_EXTRAS = ("fitting",)  # needs more to be installed: not for ``import *``
 
 __all__ = [*_HOME, *_MODULES]
 
@@ -245,11 +246,11 @@ def __getattr__(name: str) -> Any:
     """Import a public name from the module that defines it (PEP 562)."""
     if name in _HOME:
         return getattr(import_module(f"limitsurf.{_HOME[name]}"), name)
-    if name in _MODULES:
+    if name in _MODULES + _EXTRAS:
         return import_module(f"limitsurf.{name}")
     raise AttributeError(f"module 'limitsurf' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
     """List the public names."""
-    return sorted([*__all__, "__version__"])
+    return sorted([*__all__, *_EXTRAS, "__version__"])

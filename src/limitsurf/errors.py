@@ -7,6 +7,7 @@ from typing import Any
 __all__ = [
     "AmplitudeBeyondClearance",
     "BeyondPullIn",
+    "DataError",
     "InputError",
     "LimitSurfError",
     "ModelError",
@@ -53,6 +54,24 @@ class ModelError(InputError):
         self.file, self.field = str(file), field
         where = f"{file}: {field}" if field else str(file)
         super().__init__(where, problem, value=value, remedy=remedy)
+
+
+class DataError(InputError):
+    """A data file cannot be used; `file`, `line` (from 1) and `column` say where, if known."""
+
+    def __init__(
+        self,
+        file: object,
+        problem: str,
+        *,
+        line: int | None = None,
+        column: str = "",
+        value: Any = None,
+        remedy: str = "",
+    ) -> None:
+        self.file, self.line, self.column = str(file), line, column
+        places = (str(file), "" if line is None else f"line {line}", column)
+        super().__init__(": ".join(filter(None, places)), problem, value=value, remedy=remedy)
 
 
 class PartTooHeavy(LimitSurfError):

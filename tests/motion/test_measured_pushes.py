@@ -5,8 +5,9 @@ import csv
 import numpy as np
 import pytest
 from bench_pushes import STUCK, errors, finger_path, touched_path
-from zhou2016 import CENTROID, MASS, SUPPORTS, feet, read_pushes, rotation
+from zhou2016 import read_pushes, rotation
 
+from limitsurf.datasets.zhou2016 import CENTROID, MASS, SUPPORTS, three_feet
 from tests.measured_data import measured_pushes
 
 
@@ -40,7 +41,7 @@ def test_the_reader_agrees_with_the_published_pairs(data, support):
 
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_feet_carry_the_triangle(support):
-    contacts = feet(support)
+    contacts = three_feet(support)
     assert contacts.radius.sum() == pytest.approx(MASS * 9.80665)
     assert contacts.radius @ contacts.position == pytest.approx([0.0, 0.0], abs=1e-12)
 

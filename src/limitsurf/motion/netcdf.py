@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["as_target", "write_netcdf"]
 
 
-def as_target(path: str | Path | None) -> Path | None:
-    """Return a path at which a file can be written, None for None.
+def as_target(path: str | Path | None, name: str = "save") -> Path | None:
+    """Return a path at which a file can be written, None for None; errors name the argument.
 
     Raises
     ------
@@ -25,12 +25,12 @@ def as_target(path: str | Path | None) -> Path | None:
     if path is None:
         return None
     if not isinstance(path, str | Path):
-        raise InputError("save", "is no path", value=path)
+        raise InputError(name, "is no path", value=path)
     target = Path(path)
     if not target.parent.is_dir():
-        raise InputError("save", "lies in no folder", value=str(target), remedy="make it first")
+        raise InputError(name, "lies in no folder", value=str(target), remedy="make it first")
     if target.is_dir() or not os.access(target.parent, os.W_OK):
-        raise InputError("save", "cannot be written", value=str(target), remedy="choose a file")
+        raise InputError(name, "cannot be written", value=str(target), remedy="choose a file")
     return target
 
 
