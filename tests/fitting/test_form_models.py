@@ -205,6 +205,31 @@ def test_a_form_that_is_all_but_open_is_refused():
     assert caught.value.best is form
 
 
+def test_few_pairs_that_leave_the_surface_open_are_drawn_to_the_prior(monkeypatch):
+    """Where the surface is refused, the shrinkage is raised tenfold, unless it is none."""
+    loads, twists = pairs_of(ContactSet(FEET, 1.0).limit_surface(), 20)
+    asked = []
+
+    def refuse_the_first(self, form, to_newtons):
+        asked.append(form)
+        if len(asked) == 1:
+            raise SolveFailed("all but unbounded", best=form)
+        return surface(self, form, to_newtons)
+
+    surface = QuarticModel._surface
+    monkeypatch.setattr(QuarticModel, "_surface", refuse_the_first)
+    fit = QuarticModel(RHO, shrinkage=0.5).fit(loads, twists)
+    monkeypatch.undo()
+    stronger = QuarticModel(RHO, shrinkage=5.0).fit(loads, twists)
+    assert fit.shrinkage_ == stronger.shrinkage_ == 5.0
+    assert fit.predict(loads) == pytest.approx(stronger.predict(loads), abs=1e-12)
+    assert QuarticModel(RHO).fit(loads, twists).shrinkage_ == 1.0
+    asked.clear()
+    monkeypatch.setattr(QuarticModel, "_surface", refuse_the_first)
+    with pytest.raises(SolveFailed, match="unbounded"):
+        QuarticModel(RHO, shrinkage=0.0).fit(loads, twists)
+
+
 @pytest.mark.parametrize(
     "option",
     [

@@ -30,3 +30,11 @@ def test_held_out_errors_are_no_larger_than_the_published(model):
                 fit = model(RHO).fit(loads[order[:n]], twists[order[:n]])
                 errors[k, split, j] = -np.degrees(fit.score(loads[held], twists[held]))
     assert (errors.mean(axis=(0, 1)) < PUBLISHED[model]).all()
+
+
+def test_five_pushes_that_leave_the_quartic_open_are_drawn_to_the_prior():
+    loads, twists = supports()[0]
+    seen = [27, 16, 32, 25, 33]
+    fit = QuarticModel(RHO).fit(loads[seen], twists[seen])
+    assert fit.shrinkage_ == 10.0
+    assert -np.degrees(fit.score(loads, twists)) < 20.0

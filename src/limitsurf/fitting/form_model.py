@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from limitsurf.errors import InputError
+from limitsurf.errors import InputError, SolveFailed
 from limitsurf.fitting.base import LimitSurfaceModel
 from limitsurf.fitting.form_fit import FittedForm, FormLoss
 from limitsurf.fitting.pairs import Pairs
@@ -18,6 +19,7 @@ __all__ = ["FormModel"]
 
 Array = NDArray[np.float64]
 
+_STRONGER = 10.0 ** np.arange(6)
 _GUESS = 0.15  # rad, or relative: noise before the residuals tell; nine degrees, a hand-held push
 
 
@@ -36,6 +38,9 @@ class FormModel(LimitSurfaceModel):
         Gauss-Newton steps of the last fit.
     loss_ : float
         What was minimised.
+    shrinkage_ : float
+        The shrinkage used: `shrinkage`, or where few pairs then leave the surface unbounded, the
+        least of its tenfolds that does not.
     """
 
     def __init__(
@@ -70,11 +75,20 @@ class FormModel(LimitSurfaceModel):
         return not self.offset
 
     def _fit(self, pairs: Pairs) -> ConvexSet:
-        form, loss = self._fit_form(pairs, self._loss(), as_count("max_iter", self.max_iter))
-        self.motion_noise_, self.load_noise_ = loss.motion_noise, loss.load_noise
-        self.form_, self.n_iter_, self.loss_ = form, form.iterations, form.value
-        self.offset_ = -form.center * np.array([1.0, 1.0, pairs.rho]) + 0.0
-        return self._surface(form, np.diag([1.0, 1.0, 1.0 / pairs.rho]))
+        loss, steps = self._loss(), as_count("max_iter", self.max_iter)
+        tries = _STRONGER if loss.shrinkage > 0.0 else _STRONGER[:1]
+        for factor in tries:
+            trial = replace(loss, shrinkage=float(factor * loss.shrinkage))
+            form, fitted = self._fit_form(pairs, trial, steps)
+            self.motion_noise_, self.load_noise_ = fitted.motion_noise, fitted.load_noise
+            self.form_, self.n_iter_, self.loss_ = form, form.iterations, form.value
+            self.shrinkage_ = fitted.shrinkage
+            self.offset_ = -form.center * np.array([1.0, 1.0, pairs.rho]) + 0.0
+            try:
+                return self._surface(form, np.diag([1.0, 1.0, 1.0 / pairs.rho]))
+            except SolveFailed as failure:
+                unbounded = failure
+        raise unbounded
 
     def _loss(self) -> FormLoss:
         huber = as_number("huber", self.huber)
