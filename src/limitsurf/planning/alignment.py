@@ -32,18 +32,8 @@ class AlignmentPlan(LinePlan):
 
     Attributes
     ----------
-    lines : (k,) float
-        World angles of the lines, in [0, modulus) of the step function [rad].
-    margins : (k,) float
-        Error of the line's angle, relative to the orientations before it, that each step
-        tolerates, while all other steps may err by the least margin [rad]; the first step
-        tolerates any (infinity).
-    final : float
-        Orientation at the end, in [0, period) [rad].
-    period : float
-        The end orientation is known modulo this [rad].
-    squeeze : SqueezeFunction
-        What each step does to an orientation.
+    lines, margins, final, period, squeeze
+        See `LinePlan`.
     part : Part
         The part.
     model : str

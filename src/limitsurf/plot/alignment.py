@@ -11,7 +11,7 @@ from limitsurf.planning.alignment import AlignmentPlan
 from limitsurf.planning.turn_function import TurnFunction, turn_function
 from limitsurf.plot.length_unit import length_unit
 from limitsurf.plot.part import outline_path
-from limitsurf.plot.style import COLORS, lay_out
+from limitsurf.plot.style import COLORS, FILLED, lay_out
 from limitsurf.sets.arguments import as_array
 
 __all__ = ["draw_alignment"]
@@ -108,10 +108,7 @@ def _draw_stage(
     figure.add_scatter(
         x=x,
         y=y,
-        fill="toself",
-        fillcolor="rgba(31,95,168,0.15)",
-        mode="lines",
-        line={"color": COLORS[0]},
+        **FILLED,
         name=plan.part.name,
         legendgroup="part",
         showlegend=first,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from limitsurf.geometry.part import Part
 from limitsurf.planning.turn_function import TurnFunction
 from limitsurf.plot.length_unit import LengthUnit, length_unit
-from limitsurf.plot.style import COLORS, lay_out
+from limitsurf.plot.style import COLORS, FILLED, lay_out
 
 __all__ = ["draw_part", "outline_path"]
 
@@ -58,10 +58,7 @@ def draw_part(part: Part, turn: TurnFunction | None = None) -> Any:
     figure.add_scatter(
         x=x,
         y=y,
-        fill="toself",
-        fillcolor="rgba(31,95,168,0.15)",
-        mode="lines",
-        line={"color": COLORS[0]},
+        **FILLED,
         name=part.name,
     )
     center = unit.scale * np.asarray(part.centroid)

@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["COLORS", "DIRECTION_COLORS", "lay_out"]
+__all__ = ["COLORS", "DIRECTION_COLORS", "FILLED", "lay_out"]
 
 COLORS = ("#1f5fa8", "#d1495b", "#3a7d44", "#8d5a97", "#c9822b", "#2a9d8f", "#6b705c", "#b5838d")
+
+#: How the outline of a part is drawn.
+FILLED = {
+    "fill": "toself",
+    "fillcolor": "rgba(31,95,168,0.15)",
+    "mode": "lines",
+    "line": {"color": COLORS[0]},
+}
 
 #: Push towards +x, -x, +y, -y.
 DIRECTION_COLORS = ("#9ecae1", "#fdbf6f", "#b2df8a", "#cab2d6")
