@@ -27,6 +27,7 @@ from limitsurf.actuators.actuator_array import load_array
 from limitsurf.geometry.part import Part
 from limitsurf.motion.simulate_many import simulate_many
 from limitsurf.motion.starts import random_starts
+from limitsurf.motion.trajectory import Outcome
 from limitsurf.planning.alignment import plan_alignment
 from limitsurf.planning.duration import line_durations
 from limitsurf.planning.field_errors import FieldErrors
@@ -57,13 +58,20 @@ def reference_part(name):
 
 
 def errors_of_runs(plan, array, offset, method):
-    """Return errors of the final orientations in degrees, modulo the plan's period."""
+    """Return errors of the final orientations in degrees, modulo the plan's period.
+
+    Infinite for parts that left the array.
+    """
     poses = random_starts(RUNS, 1, offset)
+    on = np.full(RUNS, True)
     for line in plan.lines:
         drive = squeeze_activation(array, line, method=method)
-        poses = simulate_many(plan.part, drive, poses, tolerance=3e-4, jobs=1).finals
+        runs = simulate_many(plan.part, drive, poses[on], tolerance=3e-4, jobs=1)
+        poses[on] = runs.finals
+        on[on] = runs.outcomes != Outcome.LEFT_ARRAY
     half = plan.period / 2
-    return np.degrees(np.mod(poses[:, 2] - plan.final + half, plan.period) - half)
+    errors = np.degrees(np.mod(poses[:, 2] - plan.final + half, plan.period) - half)
+    return np.where(on, errors, np.inf)
 
 
 def reachable_sigmas(plan, errors):
